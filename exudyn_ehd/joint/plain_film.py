@@ -15,8 +15,8 @@ from exudyn_ehd.film.loads import couette_integral, journal_wrench, pressure_int
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.reynolds.links import right_hand_side, set_links
 from exudyn_ehd.film.solvers.answers import OilFields
+from exudyn_ehd.film.solvers.newton import solve_rupturing
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.film.solvers.swift_stieber import find_film
 from exudyn_ehd.joint.solved_film import FilmParts, JournalMotion, Loads, Scales, SolvedFilm
 
 _NO_CONTACT = np.zeros(6)
@@ -50,10 +50,8 @@ def solve_plain(
     """
     s = parts.solver
     y, line, work, g = s.system, s.line, s.work, parts.grid
-    if not work.warm:
-        np.logical_not(g.fixed, out=work.active)
     out = np.empty(18)
-    found, steps, count, width, smallest, couette, s_theta = _plain_film(
+    end, count, smallest, couette, s_theta = _plain_film(
         motion,
         parts.motion_scale,
         known,
@@ -62,18 +60,20 @@ def solve_plain(
         (g.directions, g.gap_shapes),
         (g.mesh, s.metric),
         g.weight,
-        y.fields,
-        (g.fixed, work.active),
-        y.rupture.block,
+        work.active,
+        y.film,
         y.column_line,
-        (work.factor, work.unknowns),
+        work.size,
+        (work.symmetric, (work.u, work.above, None), work.residual, work.unknowns),
         out,
     )
-    if not found and steps == 0:
+    if end[2] < 0:
         return None, 0
-    work.warm = found
-    work.count, work.width, work.exact = count, width, False
-    if not found:
+    work.warm, steps = work.take_end(*end)
+    work.count = count
+    if y.column_line is not None:
+        work.ready, work.exact = False, work.warm
+    if not work.warm:
         return None, steps
     _, _, _, _, _, _, _, _, omega, axial_speed = motion.tolist()
     s.vx, s.vz = 0.5 * omega, 0.5 * axial_speed / g.reference_length
@@ -101,8 +101,12 @@ def solve_plain(
 
 
 @njit(cache=True, nogil=True)
-def _plain_film(motion, scale, known, sizes, kinds, normals, links, weight, fields, sets, line, columns, work, out):
-    """Returns (found, steps, count, width, smallest gap, integral of the Couette shear, s_theta).
+def _plain_film(
+    motion, scale, known, sizes, kinds, normals, links, weight, active, film, columns, size, work, out
+):  # fmt: skip
+    """Returns (end of `solve_film`, number of unknowns, smallest gap, integral of the Couette shear, s_theta).
+
+    Without a gap there are -1 steps.
 
     ``kinds``: whether there is a squeeze, whether the line lies inside the cells, and whether the start is warm;
     ``columns``: `ColumnLine` or None; ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
@@ -110,27 +114,29 @@ def _plain_film(motion, scale, known, sizes, kinds, normals, links, weight, fiel
     force, shear, radius, half_length, cavity_shear = sizes
     (squeeze, in_cells, warm), (mesh, metric), pc = kinds, links, known[2]
     vx, vz = 0.5 * motion[8], 0.5 * motion[9] / radius
-    kx, kz, fx, fz, b = fields[0], fields[1], fields[2], fields[3], fields[10]
+    fields, fixed, _, _ = film
+    fx, fz, b = fields[2], fields[3], fields[10]
     H, HF, H_t, P = fields[11], fields[12], fields[13], fields[14]
-    (fixed, active), (factor, x), (at, shapes) = sets, work, normals
+    (matrix, state, residual, x), (at, shapes) = work, normals
     for q in range(8):
         out[10 + q] = motion[q] * scale[q]
     pose, rate, integrals = out[10:14], out[14:], out[6:10]
     smallest = rigid_gaps(pose, rate, squeeze, at, half_length, mesh[2][-1] != 0.0, H, HF, H_t)
     # not where motions are not finite
     if not (smallest > 0.0 and np.isfinite(vx + vz + rate[0] + rate[1] + rate[2] + rate[3])):
-        return False, 0, np.int64(0), np.int64(1), smallest, 0.0, 0.0
+        return (False, False, -1, size[1], size[2]), size[1], smallest, 0.0, 0.0
     for i in range(P.shape[0]):
         P[i, 0], P[i, -1] = known[0], known[1]
     set_links(H, HF, None, metric, vx, vz, fields)
     right_hand_side(fx, fz, squeeze, H_t, fields[7], b)
-    forth = 1 if fx[-1, fx.shape[1] // 2] >= 0.0 else -1
-    ok, steps, count, width = find_film((kx, kz, b), fixed, pc, in_cells, forth, warm, line, active, factor, x, P)
+    places = P, residual, x, None
+    end = solve_rupturing(size, pc, in_cells, warm, H_t, active, state, film, matrix, places)
+    count = end[3]
     if columns is not None:
-        count = extend_film(columns, b, sets, pc, factor, count, P)
+        count = extend_film(columns, b, (fixed, active), pc, matrix, end[3:], P)
     pressure_integrals(P, weight, shapes, integrals)
     couette = couette_integral(H, weight, active, fixed, cavity_shear)
     speeds = motion[8], motion[9]
     scales, ends = (force, shear, radius), (H, mesh[0], known)
     s_theta = journal_wrench(pose, integrals, couette, 0.0, 0.0, *ends, scales, speeds, out)
-    return ok, steps, count, width, smallest, couette, s_theta
+    return end, count, smallest, couette, s_theta

@@ -126,7 +126,7 @@ class _RelaxedFilm:
         rigid_gap(pose, cos_f, sin_f, z, 1.0, s.HF)
         rigid_gap(rate, cos_x, sin_x, z, 0.0, s.H_t)
         y = s.system
-        set_links(s.H, s.HF, None, s.metric, vx, vz, y.term_fields)
+        set_links(s.H, s.HF, None, s.metric, vx, vz, y.fields)
         right_hand_side(y.fx, y.fz, True, s.H_t, s.area, y.b)
         sweeps = _sor(y.kx, y.kz, y.b, 0.0, self.relax, self.tolerance, P)
         out = np.empty(4)

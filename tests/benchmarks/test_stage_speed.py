@@ -42,7 +42,7 @@ def _stage_runs(grid):
         rigid_gap(w.rate, cos_x, sin_x, z, 0.0, s.H_t)
 
     def coefficients():
-        set_links(s.H, s.HF, None, s.metric, vx, 0.0, y.term_fields)
+        set_links(s.H, s.HF, None, s.metric, vx, 0.0, y.fields)
         right_hand_side(y.fx, y.fz, True, s.H_t, s.area, y.b)
 
     return {

@@ -135,7 +135,7 @@ EFFECTS = {
         {"thrust": ehd.ThrustFaces(inner_radius=0.026, outer_radius=0.05, clearance=4e-5, n_theta=16, n_r=6)},
     ),
     "mass conservation": (
-        ("film.cavitation.oil_line", "film.solvers.newton"),
+        ("film.cavitation.oil_line",),
         {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True)},
     ),
 }
@@ -149,7 +149,8 @@ SHARED = {
     "cavitation.closures",
     "cavitation.linear_film",
     "cavitation.rupture_line",
-    "solvers.swift_stieber",
+    "solvers.newton",
+    "solvers.matrix",
     "solvers.sets",
     "cavitation.system",
     "cavitation.states",

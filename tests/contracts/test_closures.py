@@ -124,6 +124,20 @@ def compare_warm_with_cold(bearing, error):
             assert np.all(np.abs(found - expected) <= left)
 
 
+@pytest.mark.parametrize("options", ({}, {"profile": ehd.OutOfRound(order=2, amplitude=1e-9)}), ids=("plain", "oval"))
+@pytest.mark.parametrize("in_cells", (False, True))
+def test_the_tangent_of_a_film_that_hardly_moved_is_its_own(make_bearing, in_cells, options):
+    """Its solution takes the factor of the film before, its tangent does not."""
+    bearing = make_bearing(0.8, cavitation=ehd.SwiftStieber(line_in_cells=in_cells), film=FILMS[0], **options)
+    rng, warm = np.random.default_rng(7), build_model(bearing)
+    for _ in range(10):
+        motion = _random_motion(rng, bearing)
+        warm.evaluate(motion)
+        motion[:8] *= 1.0 + 1e-6 * rng.normal(size=8)
+        found, expected = warm.evaluate(motion).tangent(), build_model(bearing).evaluate(motion).tangent()
+        assert np.abs(found - expected).max() <= 1e-11 * np.abs(expected).max()
+
+
 @every_closure
 @both_films
 def test_only_pressure_differences_count(make_bearing, closure, film):

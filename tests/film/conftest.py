@@ -110,7 +110,7 @@ def factors() -> Callable[[int, int], Factors]:
         band, (lower, upper) = bands(symmetric, width)[1], bands(A, width)
         inverse, band_inverse = np.zeros(count), np.zeros(count)
         assert factor_lu(lower, upper, count, width, inverse)
-        assert factor_band(band, count, width, 0, band_inverse)
+        assert factor_band(band, count, width, band_inverse)
         return Factors(A, lower, upper, inverse, symmetric, band, band_inverse)
 
     return make

@@ -32,7 +32,6 @@ from numba.core.errors import TypingError
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic
 
-from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.kernels import FUSED, U0, U1, U2, U3, U4, unsigned
 
 LANES = 4
@@ -92,20 +91,18 @@ def subtract_four_lanes(typingctx, target, at, source, p0, p1, p2, p3, f0, f1, f
 
 
 @njit(cache=True)
-def assemble_band(kx, kz, number, order, count, width, first, band_out):
-    """Fill the upper band of the active cells' matrix, rows from ``first`` on, without links longer than ``width``.
+def assemble_band(kx, kz, number, order, count, width, band_out):
+    """Fill the upper band of the active cells' matrix.
 
     Nothing flows over the last row's links in z. Flat unsigned indices need no check of their sign.
     """
     n, m = number.shape
     along, across, places, flat = kx.reshape(-1), kz.reshape(-1), number.reshape(-1), band_out.reshape(-1)
     size, rows, stride = unsigned(n * m), unsigned(m), unsigned(band_out.shape[1])
-    wide = unsigned(min(width + 1 + PAD, band_out.shape[1]))
-    for r in range(first, count):
+    for q in range(flat.size):
+        flat[q] = 0.0
+    for r in range(count):
         c, row = unsigned(order[r]), unsigned(r) * stride
-        # links to rows above come from below
-        for q in range(row, row + wide):
-            flat[q] = 0.0
         before, on = c - U1 if c > U0 else size - U1, c + U1 if c + U1 < size else U0
         prv, nxt = c - rows if c >= rows else c + size - rows, c + rows if c + rows < size else c + rows - size
         flat[row] += along[prv] + along[c] + across[before] + across[c]
@@ -113,28 +110,21 @@ def assemble_band(kx, kz, number, order, count, width, first, band_out):
         if b > r:
             flat[row + unsigned(b - r)] -= across[c]
         b = places[nxt]
-        if b > r and b - r <= width:
-            flat[row + unsigned(b - r)] -= along[c]
-        elif first <= b < r and r - b <= width:
-            flat[unsigned(b) * stride + unsigned(r - b)] -= along[c]
+        if along[c] != 0.0 and b >= 0:
+            flat[unsigned(min(b, r)) * stride + unsigned(abs(b - r))] -= along[c]
 
 
 @njit(cache=True, fastmath=FUSED)
-def factor_band(band, count, width, first, inv_diag_out):
-    """Factor in place, four pivots at a time; returns False if a pivot is not positive.
-
-    Rows below ``first`` (a multiple of 4) are factored already and stay; those from it on hold the matrix. The
-    operations on every row, and so its bits, are the same as for ``first = 0``.
-    """
+def factor_band(band, count, width, inv_diag_out):
+    """Factor in place, four pivots at a time; returns False if a pivot is not positive."""
     flat, stride, w, size = band.reshape(-1), unsigned(band.shape[1]), unsigned(width), unsigned(count)
-    begin, changed = unsigned(max(0, first - width - 4) // 4 * 4), unsigned(first)
-    for block in range((count + 3) // 4 - int(begin) // 4):
-        k = begin + U4 * unsigned(block)
-        if k >= changed and not _factor_four(flat, stride, k, min(U4, size - k), w, inv_diag_out):
+    for block in range((count + 3) // 4):
+        k = U4 * unsigned(block)
+        if not _factor_four(flat, stride, k, min(U4, size - k), w, inv_diag_out):
             return False
         row0 = k * stride
         row1, row2, row3 = row0 + stride, row0 + U2 * stride, row0 + U3 * stride
-        for i in range(max(k + U4, changed), min(size, k + U4 + w)):
+        for i in range(k + U4, min(size, k + U4 + w)):
             d = i - k - U3
             p0, p1, p2, p3 = row0 + d + U3, row1 + d + U2, row2 + d + U1, row3 + d
             f0, f1 = flat[p0] * inv_diag_out[k], flat[p1] * inv_diag_out[k + U1]

@@ -4,23 +4,16 @@ The matrix of the finite-volume Reynolds equation couples a cell with its two ne
 in z. Active cells are numbered column by column (z fastest), so that the half-bandwidth is at most the number of
 unknown rows. The ring of columns is cut
 
-* at a column without active cells, or else
-* where the fewest active cells are linked in theta, if these are not more than may be left out of the band, or
+* at a column without active cells, or one without a link to the next, or else
 * nowhere: the ring is folded (columns 0, n-1, 1, n-2, ...), which doubles the bandwidth.
 
 The numbering depends on the active set alone and not on how it was found.
 """
 
-import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.kernels import I0
 
-# as spare links: the ring is cut at columns without active cells alone
-_NOWHERE = np.int64(-1)
-
-
-@njit(cache=True, inline="always")
+@njit(cache=True)
 def number_cells(active, kx, order_out, number_out):
     """Number the active cells, all their links in the band; returns (count, half-bandwidth).
 
@@ -34,46 +27,20 @@ def number_cells(active, kx, order_out, number_out):
     number_out : (n, m) int array
         Unknown of every cell, -1 if not active.
     """
-    return number_along(active, kx, np.int64(1), I0, order_out, number_out)
-
-
-@njit(cache=True)
-def number_along(active, kx, forth, spare, order_out, number_out):
-    """Number the active cells as `number_cells`, with the columns in theta (``forth`` = 1) or against it (-1).
-
-    Up to ``spare`` links may be left out of the band: their cells' numbers are further apart than the half-bandwidth.
-    """
     n, m = active.shape
     first = -1
     for i in range(n):
-        empty = True
+        empty = apart = True
         for j in range(m):
-            if active[i, j]:
-                empty = False
-                break
-        if empty:
-            first = (i + forth + n) % n
+            empty &= not active[i, j]
+            apart &= kx[i, j] == 0.0
+        if empty or apart:
+            first = i + 1
             break
-    cut = -1
-    if first < 0:
-        fewest = spare + 1
-        for i in range(n):
-            nxt = i + 1 if i + 1 < n else 0
-            linked = 0
-            for j in range(m):
-                if active[i, j] and active[nxt, j] and kx[i, j] != 0.0:
-                    linked += 1
-                    if linked == fewest:
-                        break
-            if linked < fewest:
-                fewest = linked
-                cut = i
-        if cut >= 0:
-            first = (cut + 1) % n if forth > 0 else cut
     count = 0
     for s in range(n):
         if first >= 0:
-            i = (first + forth * s + n) % n
+            i = (first + s) % n
         elif s % 2 == 0:
             i = s // 2
         else:
@@ -87,8 +54,6 @@ def number_along(active, kx, forth, spare, order_out, number_out):
                 number_out[i, j] = -1
     width = 1
     for i in range(n):
-        if i == cut:
-            continue
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
             a = number_out[i, j]
@@ -103,7 +68,7 @@ def number_along(active, kx, forth, spare, order_out, number_out):
 def number_with_corners(active, kx, order_out, number_out):
     """Number the active cells as `number_cells`, for a matrix that also couples neighbours across the corners."""
     n, m = active.shape
-    count, width = number_along(active, kx, np.int64(1), _NOWHERE, order_out, number_out)
+    count, width = number_cells(active, kx, order_out, number_out)
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m - 1):
@@ -112,15 +77,3 @@ def number_with_corners(active, kx, order_out, number_out):
                     if a >= 0 and b >= 0:
                         width = max(width, abs(b - a))
     return count, width
-
-
-@njit(cache=True)
-def first_changed_row(order, old_order, old_count, count, width):
-    """Row up to which a matrix with this numbering equals the one with the old numbering; a multiple of 4."""
-    same = 0
-    while same < count and same < old_count and order[same] == old_order[same]:
-        same += 1
-    if same == count and same == old_count:
-        return count
-    row = max(0, same - width)
-    return row - row % 4

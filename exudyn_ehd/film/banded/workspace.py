@@ -31,9 +31,8 @@ class Workspace:
         size = n * m
         self.shape = (n, m)
         self.order = np.zeros(size, dtype=np.int64)
-        self.old_order = np.zeros(size, dtype=np.int64)
         self.number = np.full((n, m), -1, dtype=np.int64)
-        self.band = self._new_band()
+        self.upper = self._new_band()
         self.inv_diag = np.zeros(size)
         self.unknowns = np.zeros(size)
         self.active = np.zeros((n, m), dtype=np.bool_)
@@ -41,10 +40,15 @@ class Workspace:
         self.count = 0
         self.width = 1
 
-    @cached_property
-    def factor(self) -> tuple[np.ndarray, ...]:
-        """Order of the unknowns and of those before, their numbers, and the symmetric factor, for kernels."""
-        return self.order, self.old_order, self.number, self.band, self.inv_diag
+    @property
+    def size(self) -> tuple[bool, int, int]:
+        """Argument ``size`` of `exudyn_ehd.film.solvers.newton.solve_film`."""
+        return self.warm and self.ready, self.count, self.width
+
+    def take_end(self, found: bool, exact: bool, steps: int, count: int, width: int) -> tuple[bool, int]:
+        """Take over the factor that a solution leaves; returns (found, steps)."""
+        self.ready, self.exact, self.count, self.width = found, exact, count, width
+        return found, steps
 
     def _new_band(self) -> np.ndarray:
         n, m = self.shape
@@ -56,18 +60,13 @@ class Workspace:
         return self._new_band()
 
     @cached_property
-    def upper(self) -> np.ndarray:
-        """U of a non-symmetric film."""
-        return self._new_band()
-
-    @cached_property
     def u(self) -> np.ndarray:
         """Unknowns of a film that Newton's method solves."""
         return np.zeros(self.shape)
 
     @cached_property
     def slopes(self) -> np.ndarray:
-        """Derivatives of its flows and its storage."""
+        """Derivatives of the flows and the storage of a non-symmetric film."""
         return np.zeros((5, self.order.size))
 
     @cached_property
@@ -77,15 +76,22 @@ class Workspace:
 
     @cached_property
     def matrix(self) -> tuple[np.ndarray, ...]:
-        """Argument ``matrix`` of `exudyn_ehd.film.solvers.newton`."""
+        """Argument ``matrix`` of `exudyn_ehd.film.solvers.newton` for a non-symmetric film."""
         steep = np.zeros(self.shape)
         return self.order, self.number, self.lower, self.upper, self.inv_diag, self.slopes, steep
 
     @cached_property
-    def _before(self) -> tuple[np.ndarray, ...]:
-        residual, u, above = np.zeros((3, *self.shape))
-        return residual, self.unknowns, u, np.zeros(self.shape, dtype=np.bool_), above
+    def symmetric(self) -> tuple[np.ndarray | None, ...]:
+        """Argument ``matrix`` for a symmetric film."""
+        return self.order, self.number, None, self.upper, self.inv_diag, None, None
 
-    def places_of(self, P: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Argument ``places`` of `exudyn_ehd.film.solvers.newton` for the pressures P (n, m)."""
-        return P, *self._before
+    @cached_property
+    def before(self) -> tuple[np.ndarray, ...]:
+        """Last one of ``places`` of `exudyn_ehd.film.solvers.newton` where gaps follow the pressure."""
+        u, above = np.zeros((2, *self.shape))
+        return u, np.zeros(self.shape, dtype=np.bool_), above
+
+    @cached_property
+    def residual(self) -> np.ndarray:
+        """Mass balances of the vertices."""
+        return np.zeros(self.shape)

@@ -6,7 +6,7 @@ here are scaled (see `exudyn_ehd.film.reynolds.links`); ``cavity_pressure`` of t
 * `FullSommerfeld`: nothing; negative pressures stay.
 * `Gumbel` (half Sommerfeld): the linear problem is solved, then pressures below the cavity pressure are cut off.
 * `SwiftStieber` (Reynolds condition): the complementarity problem ``P >= Pc, A P - b >= 0, (P - Pc)(A P - b) = 0``,
-  which `exudyn_ehd.film.solvers.swift_stieber` solves. Vertices with neither pressure nor source (a film at rest)
+  which `exudyn_ehd.film.solvers.newton` solves. Vertices with neither pressure nor source (a film at rest)
   count as active, so that a film at rest has the tangent of the whole film: the sum of what a motion and its opposite
   meet (a concentric journal meets half of it).
 

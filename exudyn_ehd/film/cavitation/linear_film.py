@@ -27,33 +27,34 @@ import numpy as np
 from numba import njit
 from scipy.sparse import csr_matrix
 
+from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.factors import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.kernels import I0
 from exudyn_ehd.film.reynolds.links import LinkFlux, lacks
 
 
 @njit(cache=True, nogil=True)
-def solve_linear(links, active, factor, x, P):
+def solve_linear(links, active, matrix, x, P):
     """Pressures of the ``active`` vertices, from those of all others in P (n, m); returns (ok, count, width).
 
     Parameters
     ----------
     links : (kx, kz, b)
     active : (n, m) bool array
-    factor : tuple of arrays
-        `exudyn_ehd.film.banded.workspace.Workspace.factor`.
+    matrix : tuple of arrays
+        `exudyn_ehd.film.banded.workspace.Workspace.symmetric`.
     x : (n m,) array
         Right-hand side and solution.
     """
-    (kx, kz, _), (order, _, number, band, inv_diag) = links, factor
+    (kx, kz, _), (order, number, _, upper, inv_diag, _, _) = links, matrix
     count, width = number_cells(active, kx, order, number)
-    assemble_band(kx, kz, number, order, count, width, I0, band)
-    if not factor_band(band, count, width, I0, inv_diag):
+    band = dense_band(upper, count, width)
+    assemble_band(kx, kz, number, order, count, width, band)
+    if not factor_band(band, count, width, inv_diag):
         return False, count, width
     pressures, lack = P.reshape(-1), np.empty(P.shape)
     for r in range(count):
@@ -190,12 +191,12 @@ class ColumnLine(NamedTuple):
 
     def couple(self, work: Workspace, x: np.ndarray, transposed: bool) -> None:
         """Couple rows (count, k) of p and u: with ``-dr/dp`` over D, from p to u or ``transposed``."""
-        couple_columns(self, work.active, work.factor, work.count, x, transposed)
+        couple_columns(self, work.active, work.symmetric, work.count, x, transposed)
 
     def gradients(self, work: Workspace, pc: float, H: np.ndarray, flux: LinkFlux | None) -> Gradients:
         """`Gradients` of ``D u`` at fixed u, of the last solution."""
         flow = None if flux is None else (flux.gz, flux.gz_h, flux.gz_v)
-        return Gradients(*column_gradients(self, work.active, work.factor, work.count, pc, H, flow))
+        return Gradients(*column_gradients(self, work.active, work.order, work.count, pc, H, flow))
 
 
 def column_line(grid: FilmGrid, kz: np.ndarray) -> ColumnLine:
@@ -206,8 +207,8 @@ def column_line(grid: FilmGrid, kz: np.ndarray) -> ColumnLine:
 
 
 @njit(cache=True)
-def extend_film(line, b, sets, pc, factor, count, P):
-    """Continue the pressures P (n, m) of a film of ``count`` unknowns; returns the number of all unknowns.
+def extend_film(line, b, sets, pc, matrix, size, P):
+    """Continue the pressures P (n, m) of a film; returns the number of all unknowns.
 
     P becomes what counts in loads. Rows of the factor behind the film's hold D alone.
 
@@ -215,11 +216,13 @@ def extend_film(line, b, sets, pc, factor, count, P):
     ----------
     line : `ColumnLine`
     sets : fixed and active vertices
-    factor : `Workspace.factor`
+    matrix : `Workspace.symmetric`
+    size : (number of the film's unknowns, half-bandwidth)
     """
     (stiffness, linked, kz, solved, u), (fixed, active) = line, sets
-    order, _, number, band, inv_diag = factor
+    (order, number, _, upper, inv_diag, _, _), (count, width) = matrix, size
     n, m = P.shape
+    band = dense_band(upper, n * m, width)
     solved[:] = u[:] = P
     for i in range(n):
         prv, nxt = _beside(i, linked)
@@ -238,9 +241,9 @@ def extend_film(line, b, sets, pc, factor, count, P):
 
 
 @njit(cache=True)
-def couple_columns(line, active, factor, count, x, transposed):
+def couple_columns(line, active, matrix, count, x, transposed):
     """Add ``-dr/dp`` over D times the film's rows of x (count, k) to the others; ``transposed``: the reverse."""
-    (order, _, number, _, inv_diag), free = factor, active.reshape(-1)
+    (order, number, _, _, inv_diag, _, _), free = matrix, active.reshape(-1)
     numbers, flow = number.reshape(-1), line.kz.reshape(-1)
     for r in range(count):
         c = order[r]
@@ -254,9 +257,9 @@ def couple_columns(line, active, factor, count, x, transposed):
 
 
 @njit(cache=True)
-def column_gradients(line, active, factor, count, pc, H, flow):
+def column_gradients(line, active, order, count, pc, H, flow):
     """`ColumnLine.gradients`; ``flow``: conductances of the links in z, their derivatives to gap and speed, or None."""
-    (stiffness, _, kz, _, u), order = line, factor[0]
+    stiffness, _, kz, _, u = line
     m, found = H.shape[1], 0
     rows, places, by = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64), np.zeros((10, count))
     for r in range(count):

@@ -38,8 +38,8 @@ LEAST = 1e-8
 
 
 def straight(shape: tuple[int, int]) -> np.ndarray:
-    """Return the fields (12, n m) of a `RuptureLine` that lies at no vertex."""
-    fields = np.zeros((12, shape[0] * shape[1]))
+    """Return the fields (9, n m) of a `RuptureLine` that lies at no vertex."""
+    fields = np.zeros((9, shape[0] * shape[1]))
     fields[6] = 1.0
     return fields
 
@@ -49,19 +49,17 @@ class RuptureLine:
 
     Parameters
     ----------
-    block : (12, n m) array
+    block : (9, n m) array
         Its fields; see below.
     shape : (int, int)
 
     Attributes
     ----------
-    block : (12, n m) array
-        Fields as kernels take them. The first nine are those of `exudyn_ehd.film.cavitation.oil_line.CurveFields`, of
-        which f is 0 where there can be no line, and s is 1 where there is none. Then: what the balance of a vertex
-        without film has to lack for it to join, never at known ones; the line's share of the unknowns' diagonals, in
-        the factor and of the present film.
+    block : (9, n m) array
+        Fields of `exudyn_ehd.film.cavitation.oil_line.CurveFields`: f is 0 where there can be no line, and s is 1 where
+        there is none.
     whole : (n m,) array
-        Pressure at s = 1.
+        Pressure above the cavity's at s = 1.
     f, k, s : (n, m) arrays
         Of ``block``.
     """
@@ -89,16 +87,16 @@ class RuptureLine:
 def line_terms(kx, b, fixed, in_cells, line):
     """f and k of all vertices, and what follows from them; f = 0 where the line is not looked for ``in_cells``."""
     links, rest, known, m = kx.reshape(-1), b.reshape(-1), fixed.reshape(-1), b.shape[1]
-    f, k, whole, limit = line[0], line[1], line[4], line[9]
+    f, k, whole = line[0], line[1], line[4]
     if not in_cells:
         for c in range(f.size):
-            f[c], whole[c], limit[c] = 0.0, 0.0, np.inf if known[c] else 0.0
+            f[c], whole[c] = 0.0, 0.0
         return
     last = rest.size - m
     for start, end, prv, nxt in ((0, m, last, m), (m, last, 0, 2 * m), (last, rest.size, last - m, 0)):
         at, before, behind = slice(start, end), slice(prv, prv + end - start), slice(nxt, nxt + end - start)
         _terms(links[before], links[at], rest[at], f[at], k[at], whole[at])
-        _clear_known(known[before], known[at], known[behind], f[at], whole[at], limit[at])
+        _clear_known(known[before], known[at], known[behind], f[at], whole[at])
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
@@ -111,11 +109,10 @@ def _terms(before, links, rest, f, k, whole):
 
 
 @njit(cache=True)
-def _clear_known(before, known, behind, f, whole, limit):
+def _clear_known(before, known, behind, f, whole):
     for c in range(f.size):
         if known[c] | before[c] | behind[c]:
             f[c] = whole[c] = 0.0
-        limit[c] = np.inf if known[c] else (LEAST - 0.5) * f[c]
 
 
 @njit(cache=True, inline="always")

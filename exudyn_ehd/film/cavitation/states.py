@@ -24,8 +24,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.cavitation.oil_line import FILLED, lack
+from exudyn_ehd.film.cavitation.oil_line import FILLED, curve_of, lack
 from exudyn_ehd.film.cavitation.rupture_line import LEAST
+from exudyn_ehd.film.kernels import FAST
+from exudyn_ehd.film.reynolds.balance import terms_of
 
 # Pressure over the peak, and fill, by which a vertex may violate its bound: some thousand units of round-off.
 ROUNDING = 1e-12
@@ -38,22 +40,39 @@ FULL, CLIPPED, RUPTURE, OIL = 0, 1, 2, 3
 
 
 @njit(cache=True)
-def set_states(film, late, curve, full, u, P, fill):
-    """Set pressures, fills and slopes of the curves from u.
+def set_states(film, full, u, P, fill):
+    """Set pressures, fills and slopes of the curves from u; ``fill`` is None without mass conservation.
 
-    ``late`` is that of `exudyn_ehd.film.reynolds.links`. On curves ``film.late`` is smaller by ``prompt`` times
-    the difference between the fill that a vertex has and the one that its flows carry.
+    ``film``: that of `exudyn_ehd.film.solvers.newton`. On curves ``late`` of its terms is smaller than its own one by
+    ``prompt`` times the difference between the fill that a vertex has and the one that its flows carry.
     """
+    fields, fixed, late, curve = film
+    if fill is None:
+        _set_pressures(fixed.reshape(-1), full.reshape(-1), u.reshape(-1), curve[4], curve[6], P.reshape(-1))
+    else:
+        _set_oil(terms_of(fields, fixed), late, curve_of(curve), full, u, P, fill)
+
+
+@njit(cache=True, fastmath=FAST)
+def _set_pressures(known, full, u, whole, s, P):
+    for c in range(P.size):
+        place = min(max(u[c], 0.0), 1.0)
+        curved = whole[c] * (place * place + 2.0 * max(u[c] - 1.0, 0.0))
+        p = curved if whole[c] > 0.0 else u[c]
+        P[c] = P[c] if known[c] else p
+        s[c] = max(place, LEAST) if (whole[c] > 0.0) & full[c] else 1.0
+
+
+@njit(cache=True)
+def _set_oil(film, late, curve, full, u, P, fill):
     known, sets, x = film.fixed.reshape(-1), full.reshape(-1), u.reshape(-1)
     pressures, fills = P.reshape(-1), fill.reshape(-1)
     rest, prompt, kept = film.late.reshape(-1), film.prompt.reshape(-1), late.reshape(-1)
     for c in range(x.size):
         whole, drop = curve.whole[c], curve.drop[c]
-        if curve.s[c] < 1.0:
-            curve.s[c], curve.slope[c], curve.rise[c] = 1.0, 0.0, 0.0
-            rest[c] = kept[c]
+        curve.s[c], curve.slope[c], curve.rise[c], rest[c] = 1.0, 0.0, 0.0, kept[c]
         if known[c]:
-            sets[c], fills[c] = False, 1.0
+            fills[c] = 1.0
         elif not sets[c]:
             pressures[c], fills[c] = 0.0, 1.0 - drop + x[c]
         elif whole == 0.0:
@@ -71,47 +90,71 @@ def set_states(film, late, curve, full, u, P, fill):
 
 
 @njit(cache=True)
-def place_states(curve, full, P, fill, u):
+def place_states(whole, drop, full, P, fill, u):
     """Set u from pressures above the cavity's at ``full`` vertices, from fills at others."""
-    sets, x, pressures, fills = full.reshape(-1), u.reshape(-1), P.reshape(-1), fill.reshape(-1)
+    sets, x, pressures = full.reshape(-1), u.reshape(-1), P.reshape(-1)
     for c in range(x.size):
-        whole = curve.whole[c]
-        p = max(pressures[c], 0.0) / whole if whole > 0.0 else pressures[c]
-        if whole > 0.0:
-            p = np.sqrt(p) if p < 1.0 else 0.5 * (p + 1.0)
-        x[c] = p if sets[c] else min(fills[c] - 1.0 + curve.drop[c], 0.0)
+        if not sets[c]:
+            x[c] = 0.0
+        elif whole[c] == 0.0:
+            x[c] = pressures[c]
+        else:
+            p = max(pressures[c], 0.0) / whole[c]
+            x[c] = np.sqrt(p) if p < 1.0 else 0.5 * (p + 1.0)
+    if fill is not None:
+        fills = fill.reshape(-1)
+        for c in range(x.size):
+            if not sets[c]:
+                x[c] = min(fills[c] - 1.0 + drop[c], 0.0)
 
 
 @njit(cache=True)
-def join_states(film, curve, rest, full, u):
+def join_states(fixed, links, line, rest, full, P, u):
     """Add the vertices at which oil piles up to a film of Swift and Stieber; returns their number.
 
-    At the line their own balances between given neighbours are solved: ``g u^2 / 2 + u = e``. ``rest`` (n, m): outflow
-    minus inflow, less N of vertices in the film.
+    At the line their own balances between given neighbours are solved: ``g u^2 / 2 + u = e``. ``links``: (kx, kz);
+    ``line``: (f, k); ``rest`` (n, m): outflow minus inflow, less N of vertices in the film, which becomes that with the
+    pressures of those that join; P (n, m): pressures without these.
     """
-    known, sets, x, leaves, joined = film.fixed.reshape(-1), full.reshape(-1), u.reshape(-1), rest.reshape(-1), 0
-    along, across, m = film.kx.reshape(-1), film.kz.reshape(-1), u.shape[1]
+    known, sets, x, leaves, joined = fixed.reshape(-1), full.reshape(-1), u.reshape(-1), rest.reshape(-1), 0
+    along, across, m = links[0].reshape(-1), links[1].reshape(-1), u.shape[1]
     for c in range(x.size):
-        f = curve.f[c]
-        if known[c] | sets[c] or leaves[c] > (0.5 - LEAST) * f:
+        f = line[0][c]
+        if (leaves[c] > (0.5 - LEAST) * f) | known[c] | sets[c]:
             continue
         joined += 1
         sets[c], x[c] = True, 0.0
         if f > 0.0:
             # a liner adds to k alone
-            g = max((along[c - m] + along[c] + across[c - 1] + across[c]) / curve.k[c], 2.0) - 1.0
+            g = max((along[c - m] + along[c] + across[c - 1] + across[c]) / line[1][c], 2.0) - 1.0
             e = 0.5 - leaves[c] / f
             x[c] = min(2.0 * e / (1.0 + np.sqrt(1.0 + 2.0 * g * e)), 1.0)
             leaves[c] -= 0.5 * f * (1.0 - max(x[c], LEAST)) ** 2
+    if joined > 0:
+        _press_joined(along, across, m, line, sets, P.reshape(-1), x, leaves)
     return joined
 
 
+@njit(cache=True, inline="always")
+def _press_joined(along, across, m, line, full, P, u, rest):
+    """Add the pressure flows from the vertices that join, whose pressures are 0 before, to the balances."""
+    for c in range(P.size):
+        if full[c] and u[c] > 0.0 and P[c] == 0.0 and line[0][c] > 0.0:
+            p, nxt = 0.5 * line[0][c] / line[1][c] * u[c] * u[c], c + m if c + m < P.size else c + m - P.size
+            rest[c] += (along[c - m] + along[c] + across[c - 1] + across[c]) * p
+            rest[c - m] -= along[c - m] * p
+            rest[nxt] -= along[c] * p
+            rest[c - 1] -= across[c - 1] * p
+            rest[c + 1] -= across[c] * p
+
+
 @njit(cache=True)
-def take_sink(curve, rest):
-    """Subtract N of `exudyn_ehd.film.cavitation.rupture_line` from the balances (n, m)."""
+def take_sink(f, s, sign, rest):
+    """Subtract N of `exudyn_ehd.film.cavitation.rupture_line` from the balances (n, m) ``sign`` times ``rest``."""
     balance = rest.reshape(-1)
     for c in range(balance.size):
-        balance[c] -= 0.5 * curve.f[c] * (1.0 - curve.s[c]) ** 2
+        short = 1.0 - s[c]
+        balance[c] = sign * balance[c] - 0.5 * f[c] * short * short
 
 
 @njit(cache=True)
@@ -122,8 +165,8 @@ def add_sink(curve, slopes):
 
 
 @njit(cache=True)
-def move_states(kind, bends, curve, order, count, dx, full, u, P):
-    """Take Newton's step dx (count,), of pressures where ``full``, else of fills.
+def move_states(kind, bends, curves, order, count, dx, full, u, P):
+    """Take Newton's step dx (count,), of pressures where ``full``, else of fills; ``curves``: their ``whole``.
 
     A vertex that crosses u = 0, or the end of its oil's law, stops there and changes its side. p grows exponentially
     with P. A step x that raises P goes where the tangent of p(P) leads p: to ``(1 - exp(-k x)) / k`` with k = p'' / p'.
@@ -146,7 +189,7 @@ def move_states(kind, bends, curve, order, count, dx, full, u, P):
     changes, moved, bent, worn, per_peak = 0, 0.0, 0.0, 0.0, 1.0 / max(peak, ROUNDING * last_peak, 1e-300)
     for r in range(count):
         c = order[r]
-        whole, old, change = curve.whole[c], x[c], dx[r]
+        whole, old, change = curves[c], x[c], dx[r]
         if weight > 0.0 and sets[c]:
             bent, at = max(bent, weight * abs(steep[c] * change)), pressures[c]
             worn = max(worn, abs(steep[c] * change))
@@ -181,13 +224,16 @@ def move_states(kind, bends, curve, order, count, dx, full, u, P):
 
 
 @njit(cache=True)
-def settle_states(film, kind, full, P, fill):
+def settle_states(fixed, kind, full, P, fill):
     """Clip round-off of pressures and fills beyond their bounds; returns the smallest fill before."""
-    known, sets, pressures, fills = film.fixed.reshape(-1), full.reshape(-1), P.reshape(-1), fill.reshape(-1)
-    least = 1.0
+    known, sets, pressures, least = fixed.reshape(-1), full.reshape(-1), P.reshape(-1), 1.0
     for c in range(sets.size):
         if not known[c] and kind >= RUPTURE:
-            least = min(least, fills[c])
             pressures[c] = max(pressures[c], 0.0) if sets[c] else 0.0
-            fills[c] = min(max(fills[c], 0.0), 1.0)
+    if fill is not None:
+        fills = fill.reshape(-1)
+        for c in range(sets.size):
+            if not known[c]:
+                least = min(least, fills[c])
+                fills[c] = min(max(fills[c], 0.0), 1.0)
     return least

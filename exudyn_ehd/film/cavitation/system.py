@@ -96,9 +96,8 @@ class FilmSystem:
     def __init__(self, grid: FilmGrid, kind: int) -> None:
         shape, self.kind = grid.shape, kind
         self.fields = np.zeros((15, *shape))
-        self.term_fields = self.fields[:10]
-        self.terms = FilmTerms(*(*self.term_fields, grid.fixed))
-        self.kx, self.kz, self.fx, self.fz = self.term_fields[:4]
+        self.terms = FilmTerms(*(*self.fields[:10], grid.fixed))
+        self.kx, self.kz, self.fx, self.fz = self.fields[:4]
         self.b, self.H, self.HF, self.H_t, self.pressure = self.fields[10:]
         self.H[:] = self.HF[:] = 1.0
         self.fixed = grid.fixed
@@ -108,7 +107,7 @@ class FilmSystem:
         self.area, self.terms.area[:] = grid.area, grid.area
         self.inverse_step = 0.0
         self.closes, self.turns = False, 0.0
-        empty = np.ones(shape) if kind == OIL else np.ones((0, 0))
+        empty = np.ones(shape if kind == OIL else (0, 0))
         self.fill, self.mass_old = empty, empty.copy()
         self.prompt, self.late = self.terms.prompt, np.zeros(shape)
         self.prompt[:] = 1.0
@@ -144,12 +143,12 @@ class FilmSystem:
     @property
     def curve(self) -> np.ndarray:
         """Fields of the vertices' curves, of a film that Newton's method solves."""
-        return self.rupture.block[:9]
+        return self.rupture.block
 
     @property
     def film(self) -> tuple[np.ndarray, ...]:
-        """Fields of the terms, prescribed vertices, ``late``, and fields of the curves, as kernels take them."""
-        return self.term_fields, self.fixed, self.late, self.curve
+        """Fields, prescribed vertices, ``late``, and fields of the curves, as kernels take them."""
+        return self.fields, self.fixed, self.late, self.curve
 
     @property
     def base(self) -> float:

@@ -21,7 +21,6 @@ from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.line import AtLine, undeformed
 from exudyn_ehd.film.solvers.sets import factor_solution
-from exudyn_ehd.film.solvers.swift_stieber import refine_factor
 from exudyn_ehd.film.supply.restrictors import Reservoirs, add_border
 
 # Largest pressure behind the end of a law, in its largest ones. Solvers measure what they leave by the first force that
@@ -106,10 +105,8 @@ class FilmAnswers(FilmArrays):
             return
         if self.elements is not None:
             self.elements.factor_solution()
-        elif not self.symmetric:
+        else:
             factor_solution(self.system, self.work)
-        elif self.line is not None:
-            refine_factor(self.system, self.line, self.work)
         self.work.exact = True
 
     @property
@@ -177,7 +174,7 @@ class FilmAnswers(FilmArrays):
         self.factor_solution()
         self._couple(rhs.T, True)
         if self.symmetric:
-            solve_ldl(w.band, w.inv_diag, w.count, w.width, rhs)
+            solve_ldl(self._bands()[1], w.inv_diag, w.count, w.width, rhs)
         else:
             solve_lu_transposed(*self._bands(), w.inv_diag, w.count, w.width, rhs)
 
@@ -189,7 +186,7 @@ class FilmAnswers(FilmArrays):
             areas[:] = np.linalg.solve(r.derivatives(S), areas - r.weights()[:, None] * (C @ rhs))
             rhs -= B.T @ areas
         self.factor_solution()
-        lower, upper = (w.band, w.band) if self.symmetric else self._bands()
+        lower, upper = self._bands()
         if rhs.shape[1] > 1:
             solve_columns(lower, upper, w.inv_diag, self.symmetric, w.count, w.width, rhs)
         elif self.symmetric:
@@ -202,7 +199,9 @@ class FilmAnswers(FilmArrays):
         """A (count, count)."""
         self.factor_solution()
         w, count = self.work, self.work.count
-        lower, upper = (w.band * w.inv_diag[: len(w.band), None], w.band) if self.symmetric else self._bands()
+        lower, upper = self._bands()
+        if self.symmetric:
+            lower = upper * w.inv_diag[:count, None]
         bands = range(1, w.width + 1)
         L = diags_array([lower[: count - k, k] for k in bands], offsets=[-k for k in bands], shape=(count, count))
         U = diags_array([upper[: count - k, k] for k in (0, *bands)], offsets=[0, *bands], shape=(count, count))
@@ -226,7 +225,8 @@ class FilmAnswers(FilmArrays):
 
     def _bands(self) -> tuple[np.ndarray, np.ndarray]:
         w = self.work
-        return dense_band(w.lower, w.count, w.width), dense_band(w.upper, w.count, w.width)
+        lower = w.upper if self.symmetric else w.lower
+        return dense_band(lower, w.count, w.width), dense_band(w.upper, w.count, w.width)
 
     def gradients(self, places: np.ndarray | None = None) -> Gradients:
         """Derivatives of the balances at flat vertices, those of the unknowns without ``places``, for the last solution

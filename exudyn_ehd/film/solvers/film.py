@@ -303,7 +303,7 @@ class FilmArrays:
             first.start(f, self.H, self.vx, self.vz)
             for effect in others:
                 effect.apply(f, self.HF, f.gap_z, self.vx, self.vz)
-        set_links(self.H, self.HF, None if f is None else f.flow, self.metric, self.vx, self.vz, s.term_fields)
+        set_links(self.H, self.HF, None if f is None else f.flow, self.metric, self.vx, self.vz, s.fields)
         if self.grid.seals is not None:
             seal_ends(self.grid, s.kz, self.pressure_scale)
 
@@ -351,7 +351,7 @@ class FilmArrays:
     def hold_back(self) -> None:
         """Let no flow lag that would take more than there was at the start of the step, for the links now stored."""
         if self.lagging:
-            hold_back(self.system.term_fields, self.system.inverse_step * self.system.mass_old, self.system.late)
+            hold_back(self.system.fields, self.system.inverse_step * self.system.mass_old, self.system.late)
 
     def outflow(self) -> np.ndarray:
         """Fields (3, n, m) of the last solution that `exudyn_ehd.film.reynolds.links` needs in the next step.

@@ -11,23 +11,27 @@ column diagonally dominant M-matrix, whatever the sets. So the film exists and i
 The first step is a chord step with the factor of the previous film. If the film has hardly changed, all steps are chord
 steps, and their contraction rate tells the error (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II,
 1996, section IV.8). Else the first step predicts the sets, and every further step has a factor of its own. Without
-curves and densities the balances are linear as long as the sets stay: a step with its own factor then is the last.
+curves and densities the balances are linear as long as the sets stay: a step with its own factor then is the last. Such
+steps are those of the primal-dual active set method, which for an M-matrix is Howard's policy iteration (Hintermueller,
+Ito, Kunisch, SIAM J. Optim. 13 (2003) 865; Bokanowski, Maroso, Zidani, SIAM J. Numer. Anal. 47 (2009) 3001).
 
 Where gaps follow the pressure, a step closes no gap by more than `CLOSING` of it, and is halved where the residual
 grows.
 
 Arguments that belong together are plain tuples: numba takes longer to inspect a named tuple than to run these kernels.
 
-- ``film``: (fields of `exudyn_ehd.film.reynolds.balance.terms_of`, prescribed vertices, ``late`` of the flows without
-  curves, fields of `exudyn_ehd.film.cavitation.oil_line.curve_of`);
-- ``state``: (u, pressures above the cavity's, fills), (n, m) each;
+- ``film``: (``FilmSystem.fields``, prescribed vertices, ``late`` of the flows without curves, fields of
+  `exudyn_ehd.film.cavitation.oil_line.curve_of`);
+- ``state``: (u, pressures above the cavity's, fills), (n, m) each, fills None without mass conservation;
 - ``oil``: (fill, rho, drho/dP); fill is None without mass conservation, rho and drho/dP at constant density;
 - ``density``: `DensityField.fields` between rigid surfaces, else None;
 - ``yielding``: (elements, links) of `exudyn_ehd.film.solvers.liner.winkler.find_slopes`, None where neither gaps nor
   conductances follow the pressure;
 - ``thin``: `ShearThinning.response`, None where no conductance follows the pressure;
 - ``matrix``: (order, number, lower, upper, inv_diag, slopes, relative change of links, gap or density per unit of P);
-- ``places``: (P, residual, Newton's step; u, active set and pressures above the cavity's before the step).
+  lower, slopes and change are None where the matrix is symmetric, factored as L D L^T in ``upper``;
+- ``places``: (P, residual, Newton's step; u, active set and pressures above the cavity's before the step, None where
+  no gap follows the pressure).
 """
 
 from __future__ import annotations
@@ -35,15 +39,11 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble, dense_band
-from exudyn_ehd.film.banded.factors import factor_lu
-from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
-from exudyn_ehd.film.banded.substitution import solve_lu_one
-from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_of
+from exudyn_ehd.film.banded.assemble import dense_band
+from exudyn_ehd.film.cavitation.rupture_line import line_terms
 from exudyn_ehd.film.cavitation.states import (
     OIL,
     RUPTURE,
-    add_sink,
     join_states,
     move_states,
     place_states,
@@ -52,17 +52,19 @@ from exudyn_ehd.film.cavitation.states import (
     take_sink,
 )
 from exudyn_ehd.film.cavitation.system import imbalance
-from exudyn_ehd.film.lubricant.density import density_at, density_slope_at
-from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, oil_links, terms_of
-from exudyn_ehd.film.solvers.liner.elements import Rates, add_gap_slopes, load_of, slopes_of
-from exudyn_ehd.film.solvers.liner.winkler import find_slopes, plain_residual
+from exudyn_ehd.film.kernels import I0, I1, NO
+from exudyn_ehd.film.lubricant.density import density_at
+from exudyn_ehd.film.reynolds.balance import film_balance, terms_of
+from exudyn_ehd.film.reynolds.links import lacks
+from exudyn_ehd.film.solvers.liner.winkler import plain_residual
+from exudyn_ehd.film.solvers.matrix import factor_film, solve_step
 
 MOST_STEPS = 60
 # Largest estimated error after a chord step, over the peak pressure; and largest change of u on a curve, and weighted
 # change of the density, in a last step with its own factor, whose error is of the order of its square.
 LEFT, SETTLED = 1e-13, 1e-8
-# Largest contraction rate at which a factor serves on, as a whole or in rows: at larger ones a new one is faster. A
-# step that changes u on a curve by a share of itself makes about that rate.
+# Largest contraction rate at which a factor serves on: at larger ones a new one is faster. A step that changes u on a
+# curve by a share of itself makes about that rate.
 REUSABLE = 0.01
 # Largest residual of a vertex that counts as round-off, over the largest flow; the second one for a density, as
 # round-off grows near the end of its law. Over the largest flow that drives the film: larger residuals come from a
@@ -82,9 +84,6 @@ FAR = 10.0
 GOES_ON, FOUND, LOST = 0, 1, 2
 # Largest share of a gap by which one step may close it; larger values risk a shut gap, smaller ones cost steps.
 CLOSING = 0.8
-# Smallest range of pressures, over the scaled speed (the pressure scale of a gap of one clearance). A smaller range is
-# round-off of a centred journal, and counts as this.
-LEAST_PRESSURE = 1e-6
 # Growth of the residual from which a step is halved, the second one where vertices of a film that conserves mass change
 # their side: their fills change at once, those of their neighbours in the next step. Relative change of the pressures
 # below which the growth is round-off.
@@ -94,94 +93,32 @@ WORSE, REFILLED, SILENT = 2.0, 10.0, 1e-8
 MOST_HALVINGS, PATIENT = 12, 20
 
 
-@njit(cache=True)
-def _where_filled(fill, sets):
-    """Return the full vertices of a film that conserves mass; else None."""
-    if fill is None:
-        return None
-    return sets
+@njit(cache=True, nogil=True, inline="always")
+def begin(film, kind, pc, warm, full, state, P):
+    """Unknowns of the pressures P (n, m) and fills at hand, and the film of them.
 
-
-@njit(cache=True)
-def _add_edge(fill, curve, terms, rho, slopes):
-    if fill is None:
-        add_sink(curve, slopes)
-    else:
-        add_curve(curve, terms, rho, slopes)
-
-
-@njit(cache=True, nogil=True)
-def factor_film(kind, P, oil, density, film, yielding, thin, matrix, full):
-    """Set and factor Newton's matrix of a film; returns (ok, count, width).
-
-    ``kind``: that of `exudyn_ehd.film.cavitation.states`; P and ``full``: pressures and active set (n, m).
+    A start that is not ``warm`` has fully developed curves, and no gauge pressure at other vertices.
     """
-    (fill, rho, rho_P), terms = oil, terms_of(film[0], film[1])
-    order, number, lower, upper, inv_diag, slopes, steep = matrix
-    if density is not None:
-        scale, floor, law, known, _ = density
-        density_slope_at(P, scale, floor, law, known, rho_P)
-    # Couette flows couple where pressure flow is dropped
-    coupled, free, sets = oil_links(terms, full)
-    filled, unknown = _where_filled(fill, sets), full if kind == RUPTURE else free
-    film_slopes(fill, filled, rho, rho_P, terms, slopes)
-    if thin is not None:
-        add_tangents(thin[0], terms.kx, terms.kz, filled, slopes)
-    if yielding is not None:
-        elements, links = yielding
-        gap_slopes, gaps, load, rates, beta, by, _, _, _ = elements
-        find_slopes(P, fill, rho, film, elements, links)
-        at = slopes_of(gap_slopes), load_of(load), Rates(*rates)
-        add_gap_slopes(P, fill, filled, rho, terms, *at, beta, by, slopes)
-        slight = LEAST_PRESSURE * (abs(links[2]) + abs(links[3]))
-        steep[:] = 0.0 if thin is None else 1.0 / max(P.max() - P.min(), slight, 1e-300)
-        _steepen(gap_slopes[0], gaps[0], rho_P, steep)
-    _add_edge(fill, curve_of(film[3]), terms, rho, slopes)
-    if thin is None:
-        count, width = number_cells(unknown, coupled, order, number)
-    else:
-        count, width = number_with_corners(unknown, coupled, order, number)
-    L, U = dense_band(lower, count, width), dense_band(upper, count, width)
-    assemble(coupled, terms.kz, slopes, number, order, count, L, U)
-    if thin is not None:
-        add_corners(thin[1], thin[2:], terms.kx, terms.kz, filled, number, L, U)
-    return factor_lu(L, U, count, width, inv_diag), count, width
-
-
-@njit(cache=True)
-def _steepen(yields, gap, rho_P, steep_out):
-    steep, by, height = steep_out.reshape(-1), yields.reshape(-1), gap.reshape(-1)
-    for c in range(steep.size):
-        steep[c] = max(steep[c], by[c] / height[c])
-    if rho_P is not None:
-        denser = rho_P.reshape(-1)
-        for c in range(steep.size):
-            steep[c] = max(steep[c], denser[c])
-
-
-@njit(cache=True, nogil=True)
-def begin(film, kind, pc, full, state, P):
-    """Unknowns of the pressures P (n, m) and fills at hand, and the film of them."""
-    fixed, above = film[1], state[1]
-    for i in range(P.shape[0]):
-        for j in range(P.shape[1]):
-            above[i, j] = P[i, j] - pc
-            if kind < RUPTURE:
-                full[i, j] = not fixed[i, j]
-    place_states(curve_of(film[3]), full, above, state[2], state[0])
+    known, sets, above, x = film[1].reshape(-1), full.reshape(-1), state[1].reshape(-1), P.reshape(-1)
+    whole, drop = film[3][4], film[3][5]
+    for c in range(x.size):
+        if not (warm or known[c]):
+            x[c] = pc + whole[c] if whole[c] > 0.0 else max(pc, 0.0)
+        sets[c] = not known[c] and (sets[c] or not warm or kind < RUPTURE)
+        above[c] = x[c] - pc
+    place_states(whole, drop, full, above, state[2], state[0])
     _set_film(film, pc, full, state, P)
 
 
 @njit(cache=True)
 def _set_film(film, pc, full, state, P):
     """Set the pressures P (n, m), and the fields that `set_states` sets."""
-    terms, fixed, late, curve = film
-    set_states(terms_of(terms, fixed), late, curve_of(curve), full, *state)
-    _lift(fixed, state[1], pc, P)
+    set_states(film, full, *state)
+    lift(film[1], state[1], pc, P)
 
 
-@njit(cache=True)
-def _lift(fixed, pressures, pc, P):
+@njit(cache=True, inline="always")
+def lift(fixed, pressures, pc, P):
     """Set P (n, m) from pressures above the cavity's, except at prescribed vertices."""
     known, above, x = fixed.reshape(-1), pressures.reshape(-1), P.reshape(-1)
     for c in range(x.size):
@@ -225,22 +162,22 @@ def _look(film, kind, even, stored, is_last, full, state, rest, progress):
     rest : (n, m) array
         Mass balances, less N.
     progress : tuple
-        Whether the factor serves for another step; whether it is that of a film on the way here; whether the last step
-        converged; sum of the third value of `move_states` since that factor; largest change in the last step, of
-        pressures over the peak, of u on curves or of fills.
+        Whether the factor serves for another step; whether it is that of a film on the way here with the same unknowns;
+        whether the last step converged; sum of the third value of `move_states` since that factor; largest change in
+        the last step, of pressures over the peak, of u on curves or of fills.
     """
     (ready, own, done, drift, last), (u, P, fill) = progress, state
-    terms, curve = terms_of(film[0], film[1]), curve_of(film[3])
-    if kind == RUPTURE and join_states(terms, curve, rest, full, u) > 0:
-        done = ready = False
-        set_states(terms, film[2], curve, full, u, P, fill)
+    links, line = (film[0][0], film[0][1]), (film[3][0], film[3][1])
+    if kind == RUPTURE and join_states(film[1], links, line, rest, full, P, u) > 0:
+        done = ready = own = False
+        set_states(film, full, u, P, fill)
     outcome = GOES_ON
     if done or is_last:
-        of_drive, of_flows = imbalance(terms, P, rest, full, kind == RUPTURE, stored)
+        of_drive, of_flows = imbalance(terms_of(film[0], film[1]), P, rest, full, kind == RUPTURE, stored)
         # where a pressure's last digit changes the balances by more, the residual can't be smaller
         rests = done and last <= LEFT
         if of_flows <= even or rests:
-            least = settle_states(terms, kind, full, P, fill)
+            least = settle_states(film[1], kind, full, P, fill)
             sound = least > -LARGEST_DEFICIT and of_drive <= BALANCED
             outcome = FOUND if sound else LOST
         elif is_last:
@@ -250,7 +187,7 @@ def _look(film, kind, even, stored, is_last, full, state, rest, progress):
 
 
 @njit(cache=True, inline="always")
-def _take_step(kind, bends, curve, matrix, size, is_first, fresh, x, full, state, rest, progress):
+def _take_step(kind, bends, whole, matrix, size, is_first, fresh, x, full, state, rest, progress):
     """Take Newton's step; returns (whether it is finite, number of vertices that change their side, progress).
 
     Parameters
@@ -265,10 +202,11 @@ def _take_step(kind, bends, curve, matrix, size, is_first, fresh, x, full, state
     for r in range(count):
         x[r] = -flat[order[r]]
     if count > 0:
-        solve_lu_one(dense_band(lower, count, width), dense_band(upper, count, width), inv_diag, count, width, x)
-    changes, moved, bent, worn = move_states(kind, bends, curve, order, count, x, full, state[0], state[1])
+        solve_step(lower, dense_band(upper, count, width), inv_diag, count, width, x)
+    changes, moved, bent, worn = move_states(kind, bends, whole, order, count, x, full, state[0], state[1])
+    own = (own or fresh) and changes == 0
     if fresh:
-        own, drift = True, 0.0
+        drift = 0.0
         done, ready = changes == 0 and bent <= SETTLED and moved <= FAR, changes == 0 and worn <= REUSABLE
     else:
         # the contraction rate is unknown after the first step
@@ -277,7 +215,7 @@ def _take_step(kind, bends, curve, matrix, size, is_first, fresh, x, full, state
     return moved < 1e300, changes, (ready, own, done, drift + bent, moved)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def proceed(norm, gap, course, kind, pc, full, state, oil, density, film, yielding, thin, matrix, places):
     """Shorten the last step or take the next one, as the residual demands; returns (outcome, course).
 
@@ -290,46 +228,50 @@ def proceed(norm, gap, course, kind, pc, full, state, oil, density, film, yieldi
         it that is taken, 0: none; largest norm after it; count and width of the factor; progress of `_look`.
     """
     step, fresh, tries, share, limit, count, width, progress = course
-    P, rest, x, u_before, full_before, before = places
+    P, rest, x, before = places
     u, above, _ = state
-    if tries >= 0:
+    if yielding is not None and tries >= 0:
         worse = norm > limit and progress[4] > SILENT
         if (not gap > 0.0 or worse) and share > 0.0 and tries < MOST_HALVINGS:
             share = 0.5 if fresh else 0.0
-            _shorten(share, film, pc, full, state, P, (u_before, full_before))
+            _shorten(share, film, pc, full, state, P, before)
             return GOES_ON, (step, fresh, tries + 1, share, limit, count, width, progress)
         if share < 1.0:
             progress = (False, False, False, progress[3], progress[4])
     if not (gap > 0.0 and norm < np.inf):
         return LOST, course
-    curve, is_last, stored, bends = curve_of(film[3]), step + 1 == MOST_STEPS, 0.0, _bends(pc, oil, density, rest)
+    most, stored, bends = MOST_STEPS, 0.0, _bends(pc, oil, density, rest)
+    if kind == RUPTURE and density is None and yielding is None:
+        # a line moves by a column a step
+        most = max(most, P.shape[0])
     if yielding is not None:
         elements, steep = yielding[0], matrix[6]
         # old and new deflection cancel at an instant
         stored = elements[3][1] * np.max(np.abs(elements[1][2]) * film[0][7])
         bends = BENDS, steep, 1e300, elements[2].reshape(4, -1), 1.0
     even = EVEN_DENSE if density is not None or (progress[2] and step >= PATIENT) else EVEN
-    outcome, progress = _look(film, kind, even, stored, is_last, full, state, rest, progress)
+    outcome, progress = _look(film, kind, even, stored, step + 1 == most, full, state, rest, progress)
     fresh = not progress[0]
     if outcome == GOES_ON and fresh:
-        ok, count, width = factor_film(kind, P, oil, density, film, yielding, thin, matrix, full)
+        ok, count, width = factor_film(
+            kind, P, oil, density, film, yielding, thin, matrix, full, (progress[1], count, width)
+        )
         outcome = GOES_ON if ok else LOST
     if outcome != GOES_ON:
-        _lift(film[1], above, pc, P)
         return outcome, (step, fresh, tries, share, limit, count, width, progress)
     if yielding is not None:
-        u_before[:], full_before[:], before[:] = u, full, above
+        before[0][:], before[1][:], before[2][:] = u, full, above
     is_first, size = step == 0, (count, width)
     ok, changes, progress = _take_step(
-        kind, bends, curve, matrix, size, is_first, fresh, x, full, state, rest, progress
+        kind, bends, film[3][4], matrix, size, is_first, fresh, x, full, state, rest, progress
     )
     if not ok:
         return LOST, course
     _set_film(film, pc, full, state, P)
     if yielding is not None:
-        share = _open_share(above, before, yielding[0][0][0], yielding[0][1][0])
+        share = _open_share(above, before[2], yielding[0][0][0], yielding[0][1][0])
         if share < 1.0:
-            _shorten(share, film, pc, full, state, P, (u_before, full_before))
+            _shorten(share, film, pc, full, state, P, before)
     limit = norm * (WORSE if fresh else 1.0)
     if kind == OIL and changes > 0:
         limit = norm * REFILLED
@@ -346,31 +288,51 @@ def _bends(pc, oil, density, rest):
 
 
 @njit(cache=True)
-def _residual(P, above, oil, density, film, ruptures, out):
+def _residual(lower, P, above, oil, density, film, ruptures, out):
     """Set the residual of every vertex between rigid surfaces; flows follow differences, so that pressures above the
     cavity's keep their digits."""
-    fill, rho, _ = oil
-    if density is not None:
-        scale, floor, law, known, _ = density
-        density_at(P, scale, floor, law, known, rho)
-    film_balance(above, fill, rho, terms_of(film[0], film[1]), out)
-    if ruptures:
-        take_sink(curve_of(film[3]), out)
+    if lower is None:
+        fields = film[0]
+        lacks((fields[0], fields[1], fields[10]), above, out)
+        take_sink(film[3][0], film[3][6], -1.0, out)
+    else:
+        fill, rho, _ = oil
+        if density is not None:
+            scale, floor, law, known, _ = density
+            density_at(P, scale, floor, law, known, rho)
+        film_balance(above, fill, rho, terms_of(film[0], film[1]), out)
+        if ruptures:
+            take_sink(film[3][0], film[3][6], 1.0, out)
+
+
+@njit(cache=True, inline="always")
+def course_from(size):
+    """``course`` of `proceed` before the first step; ``size``: that of `solve_film`."""
+    serves, count, width = size
+    return I0, NO, I0 - I1, 1.0, 0.0, count, width, (serves, NO, NO, 0.0, LEFT)
+
+
+@njit(cache=True, inline="always")
+def end_of(outcome, course):
+    """Return whether a film is found, whether the factor is its own, steps, count and width."""
+    step, _, _, _, _, count, width, (_, own, done, drift, _) = course
+    found = outcome == FOUND
+    return found, found and done and own and drift <= LEFT, step, count, width
 
 
 @njit(cache=True, nogil=True)
-def solve_film(course, kind, pc, full, state, oil, density, film, yielding, matrix, places, plain):
-    """Solve by Newton's method; returns as `proceed`.
+def solve_film(kind, pc, warm, size, full, state, oil, density, film, yielding, matrix, places, plain):
+    """Solve by Newton's method, from the film at hand if it is ``warm``, else from a full one; returns as `end_of`.
 
-    ``plain``: for a film whose gap alone follows its pressure, further arguments of `plain_residual`: (numbers, whether
-    the film clips, gap and rate of the undeformed surfaces, true gap, old deflection, `LinerFilm.known`); None between
-    rigid surfaces.
+    ``size``: (whether the factor at hand serves for the first step, its count and width); ``plain``: for a film whose
+    gap alone follows its pressure, further arguments of `plain_residual`: (numbers, whether the film clips, gap and
+    rate of the undeformed surfaces, true gap, old deflection, `LinerFilm.known`); None between rigid surfaces.
     """
-    begin(film, kind, pc, full, state, places[0])
-    norm, gap = 0.0, 1.0
+    begin(film, kind, pc, warm, full, state, places[0])
+    norm, gap, course = 0.0, 1.0, course_from(size)
     while True:
         if plain is None:
-            _residual(places[0], state[1], oil, density, film, kind == RUPTURE, places[1])
+            _residual(matrix[2], places[0], state[1], oil, density, film, kind == RUPTURE, places[1])
         else:
             (numbers, clips, rigid, G, delta_old, known), (elements, links) = plain, yielding
             norm, gap = plain_residual(
@@ -381,4 +343,26 @@ def solve_film(course, kind, pc, full, state, oil, density, film, yielding, matr
             norm, gap, course, kind, pc, full, state, oil, density, film, yielding, None, matrix, places
         )
         if outcome != GOES_ON:
-            return outcome, course
+            lift(film[1], state[1], pc, places[0])
+            return end_of(outcome, course)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def solve_rupturing(size, pc, in_cells, warm, H_t, full, state, film, matrix, places):
+    """`solve_film` of a film of Swift and Stieber without liner, density law and shear thinning.
+
+    ``in_cells``: whether the film may end inside its cells, else on vertices; ``H_t`` (n, m): rate of the gap.
+    """
+    (fields, fixed, _, curve), (serves, count, width) = film, size
+    inflow, known, rate = fields[10].reshape(-1), fixed.reshape(-1), H_t.reshape(-1)
+    line_terms(fields[0], fields[10], fixed, in_cells, curve)
+    grow, most, driven = fields[4].reshape(-1), 0.0, 0.0
+    for c in range(grow.size):
+        grow[c] = rate[c]
+        most = max(most, abs(inflow[c]))
+        if not known[c]:
+            driven = max(driven, abs(inflow[c]))
+    # pressures that are left over lead nowhere in a film at rest, or where nothing but round-off drives it
+    warm &= driven > EVEN * most
+    at_hand, oil = (serves and warm, count, width), (None, None, None)
+    return solve_film(RUPTURE, pc, warm, at_hand, full, state, oil, None, film, None, matrix, places, None)

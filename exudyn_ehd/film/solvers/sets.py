@@ -1,7 +1,6 @@
 """Solution of a film whose gaps and conductances do not follow its pressure, by the method that its closure takes.
 
-A film that does not rupture, or is cut off afterwards, is linear. Films of Swift and Stieber have Newton's method of
-`exudyn_ehd.film.solvers.swift_stieber`, those that conserve mass or whose density follows the pressure the one of
+A film that does not rupture, or is cut off afterwards, is linear. All others have Newton's method of
 `exudyn_ehd.film.solvers.newton`.
 
 Pseudo-transient continuation for a film that Newton's method does not find from its initial guess: an additional
@@ -11,7 +10,6 @@ storage at every vertex slows the film down and is reduced step by step; the las
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeAlias
 
 import numpy as np
 
@@ -21,8 +19,8 @@ from exudyn_ehd.film.cavitation.states import CLIPPED, OIL, RUPTURE
 from exudyn_ehd.film.cavitation.system import FilmSystem, has_unfed_row
 from exudyn_ehd.film.lubricant.density import know_at
 from exudyn_ehd.film.reynolds.balance import store_content
-from exudyn_ehd.film.solvers.newton import FOUND, LEFT, factor_film, solve_film
-from exudyn_ehd.film.solvers.swift_stieber import solve_rupturing
+from exudyn_ehd.film.solvers.matrix import factor_film
+from exudyn_ehd.film.solvers.newton import solve_film, solve_rupturing
 from exudyn_ehd.status import Status
 
 MOST_STEPS = 200
@@ -31,8 +29,6 @@ MOST_STEPS = 200
 FIRST, HOPELESS, LAST, LEAST = 100.0, 1e6, 1e-3, 1e-7
 # Factors of the storage after a film that is found, and after one that is not.
 FADES, GROWS = 0.3, 8.0
-# ``course`` of `exudyn_ehd.film.solvers.newton`.
-Course: TypeAlias = tuple[int, bool, int, float, float, int, int, tuple[bool, bool, bool, float, float]]
 # Share of its compressibility with which an oil counts as nearly incompressible.
 SOFTEST = 1e-9
 
@@ -111,7 +107,7 @@ def follow(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
         blend = (s.inverse_step * s.mass_old + extra * mass) / inverse if inverse > 0.0 else s.mass_old
         # in a steady film the gap's rate is kept: extra (fill H - mass) + fill dH/dt
         H = s.H + s.H_t / extra if s.inverse_step == 0.0 < extra else s.H
-        store_content(s.term_fields, H, s.H_t, inverse, blend, s.instant)
+        store_content(s.fields, H, s.H_t, inverse, blend, s.instant)
         ok, steps = solve_system(s, work)
         if ok:
             np.multiply(s.fill, s.H, out=mass)
@@ -126,33 +122,22 @@ def follow(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
     return (Status.NO_OIL if runs_dry and not s.H_t.any() else Status.NOT_CONVERGED), steps
 
 
-def is_exact(course: Course) -> bool:
-    """Return whether the factor at the end is that of the solved film."""
-    _, own, done, drift, _ = course[-1]
-    return done and own and drift <= LEFT
-
-
-def course_from(work: Workspace, serves: bool) -> Course:
-    """``course`` of `proceed` before the first step; ``serves``: whether the factor in the workspace does."""
-    return 0, False, -1, 1.0, 0.0, work.count, work.width, (serves, False, False, 0.0, LEFT)
+def _states_of(s: FilmSystem, work: Workspace) -> tuple[np.ndarray | None, ...]:
+    """Argument ``state`` of `solve_film`."""
+    return work.u, work.above, s.fill if s.kind == OIL else None
 
 
 def solve_system(s: FilmSystem, work: Workspace) -> tuple[bool, int]:
     """Solve by Newton's method, from the last film if ``work.warm``, else from a full one: (found, steps)."""
-    P, pc, ready = s.linear_pressure, s.base, work.warm and work.ready
-    if not work.warm:
-        # fully developed curves, no gauge pressure at other vertices
-        np.logical_not(s.fixed, out=work.active)
-        whole = s.rupture.whole.reshape(P.shape)
-        np.copyto(P, np.where(whole > 0.0, pc + whole, max(pc, 0.0)), where=work.active)
+    P = s.linear_pressure
     s.terms.late[:] = s.late
-    outcome, course = solve_film(
-        course_from(work, ready), s.kind, pc, work.active, (work.u, work.above, s.fill), *_film_of(s, work),
-        work.places_of(P), None,
+    ok, steps = work.take_end(
+        *solve_film(
+            s.kind, s.base, work.warm, work.size, work.active, _states_of(s, work), *_film_of(s, work),
+            (P, work.residual, work.unknowns, None), None,
+        )
     )  # fmt: skip
-    steps, *_, work.count, work.width, _ = course
-    ok = work.warm = work.ready = outcome == FOUND
-    work.exact = ok and is_exact(course)
+    work.warm = ok
     if ok and s.density is not None:
         scale, floor, law, known, _ = s.density.fields(s.floor)
         know_at(P, scale, floor, law, known)
@@ -160,17 +145,19 @@ def solve_system(s: FilmSystem, work: Workspace) -> tuple[bool, int]:
 
 
 def factor_solution(s: FilmSystem, work: Workspace) -> None:
-    """Make the factor in the workspace that of the last solution."""
+    """Make the factor in the workspace that of the last solution, of a film that is not linear."""
     oil, density, film, yielding, matrix = _film_of(s, work)
     full = work.active if s.kind >= RUPTURE else ~s.fixed
-    _, work.count, work.width = factor_film(s.kind, s.linear_pressure, oil, density, film, yielding, None, matrix, full)
+    rest = oil, density, film, yielding, None, matrix, full, (False, work.count, work.width)
+    _, work.count, work.width = factor_film(s.kind, s.linear_pressure, *rest)
 
 
 def _film_of(s: FilmSystem, work: Workspace) -> tuple[object, ...]:
     """Arguments from ``oil`` to ``matrix`` of `solve_film`."""
     fill, rho = s.fill if s.kind == OIL else None, s.density
     oil = (fill, None, None) if rho is None else (fill, rho.rho, rho.rho_P)
-    return oil, None if rho is None else rho.fields(s.floor), s.film, None, work.matrix
+    matrix = work.symmetric if s.kind != OIL and rho is None else work.matrix
+    return oil, None if rho is None else rho.fields(s.floor), s.film, None, matrix
 
 
 def solve_sets(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
@@ -195,16 +182,21 @@ def _solve_linear(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
     """Solve the linear film of all vertices that are not prescribed."""
     np.logical_not(s.fixed, out=work.active)
     links, P = (s.kx, s.kz, s.b), s.linear_pressure
-    ok, work.count, work.width = solve_linear(links, work.active, work.factor, work.unknowns, P)
+    ok, work.count, work.width = solve_linear(links, work.active, work.symmetric, work.unknowns, P)
+    work.exact = ok
     return (Status.CONVERGED if ok else Status.NOT_CONVERGED), 1
 
 
 def _solve_rupturing(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
     """Solve a film of Swift and Stieber, and continue it behind a line between its columns."""
-    ok, steps = solve_rupturing(s, s.rupture, work, s.line is not None)
+    pc, places = s.cavity_pressure, (s.pressure, work.residual, work.unknowns, None)
+    rest = work.active, _states_of(s, work), s.film, work.symmetric, places
+    ok, steps = work.take_end(*solve_rupturing(work.size, pc, s.line is not None, work.warm, s.H_t, *rest))
+    work.warm = ok
     if s.column_line is not None:
-        size, pc = work.count, s.cavity_pressure
-        work.count = extend_film(s.column_line, s.b, (s.fixed, work.active), pc, work.factor, size, s.pressure)
+        # the factor has rows of more unknowns, and serves no other film
+        size, work.ready, work.exact = (work.count, work.width), False, ok
+        work.count = extend_film(s.column_line, s.b, (s.fixed, work.active), pc, work.symmetric, size, s.pressure)
     return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
 
 
@@ -212,7 +204,7 @@ def _solve_by_newton(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
     """Solve a film that conserves mass or whose density follows the pressure, by Newton's method; where that does not
     find it from a full film, by `recover`."""
     was_warm, status = work.warm, Status.CONVERGED
-    store_content(s.term_fields, s.H, s.H_t, s.inverse_step, s.mass_old, s.instant)
+    store_content(s.fields, s.H, s.H_t, s.inverse_step, s.mass_old, s.instant)
     ok, steps = solve_system(s, work)
     if not ok:
         status = Status.NOT_CONVERGED

@@ -9,14 +9,16 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.cavitation.linear_film import column_gradients, couple_columns, rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import line_gradients, weigh_line
 from exudyn_ehd.film.gradients import add_columns, functional_gradients, link_rows
+from exudyn_ehd.film.kernels import YES
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, wrench_gradient
 from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
+from exudyn_ehd.film.solvers.matrix import factor_symmetric
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.film.solvers.swift_stieber import refine_line
 from exudyn_ehd.joint.plain_film import has_plain_edges
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 
@@ -46,14 +48,14 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
     s, p, g, w, scales, out = film.solver, film.parts, film.grid, film.journal, film.scales, np.empty((6, MOTION_SIZE))
     y, line, work = s.system, s.line, s.work
     _plain_tangent(
-        y.fields,
-        None if line is None else line.block,
+        y.film,
+        line is not None,
         y.column_line,
-        work.factor,
+        work.symmetric,
         (work.count, work.width),
         work.exact,
         (s.area if s.squeeze else s.nothing, s.nothing, g.weight, s.metric),
-        (g.fixed, work.active),
+        work.active,
         g.gap_shapes,
         g.mesh,
         (s.vx, s.vz, s.flow_x, s.closure.cavity_shear, s.squeeze, y.cavity_pressure),
@@ -66,40 +68,39 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
 
 
 @njit(cache=True, nogil=True)
-def _plain_tangent(film, line, between, factor, size, exact, fields, sets, shapes, mesh, speeds, loads, scales, out):
+def _plain_tangent(film, ends, between, matrix, size, exact, fields, active, shapes, mesh, speeds, loads, scales, out):
     """Write the tangent.
 
-    ``film``: ``FilmSystem.fields``; ``line``, ``between``: `RuptureLine.block` and `ColumnLine`, or None;
+    ``film``: `FilmSystem.film`; ``ends``: whether it may end inside its cells; ``between``: `ColumnLine` or None;
     ``exact``: whether the factor is that of the solution.
     """
-    order, _, number, band, inv_diag = factor
-    count, width = size
-    kx, kz, b, H, HF, P = film[0], film[1], film[10], film[11], film[12], film[14]
+    (order, number, _, upper, inv_diag, _, _), (count, width) = matrix, size
+    terms, fixed, _, line = film
+    H, HF, P = terms[11], terms[12], terms[14]
     by_rate, by_gap, weight, metric = fields
-    fixed, active = sets
     vx, vz, flow_x, cavity_shear, squeeze, pc = speeds
-    if line is not None and not exact:
-        refine_line((kx, kz, b), line, factor, count, width)
+    if not exact:
+        factor_symmetric(film, matrix, active, (YES, count, width))
     lam = np.empty((4, count))
     load_adjoint_rhs(order, count, weight, shapes, active, lam)
     if between is not None:
         _, linked, _, P, u = between
         rows_of_linear(u, fixed, linked, pc, active, number, lam)
-        couple_columns(between, active, factor, count, lam.T, True)
-    solve_ldl(band, inv_diag, count, width, lam)
+        couple_columns(between, active, matrix, count, lam.T, True)
+    solve_ldl(dense_band(upper, count, width), inv_diag, count, width, lam)
     by_links, by_speed = np.empty((4, H.size)), np.empty((3, H.size))
     columns, whole = np.zeros((10, count)), np.empty((10, count))
     up = np.ones((2, H.size))
     link_derivatives(P, H, HF, None, up, None, metric, vx, vz, by_links, by_speed)
     link_rows(order, count, H.shape[1], by_links, by_speed, None, (by_rate, by_gap), whole)
     add_columns(np.arange(count), order[:count], whole, shapes, columns)
-    if line is not None:
+    if ends:
         rows, places, weights = weigh_line(line, number)
         by = np.zeros((10, places.size))
         line_gradients(places, weights, H, HF, None, None, vx, vz, flow_x, squeeze, mesh, by)
         add_columns(rows, places, by, shapes, columns)
     if between is not None:
-        rows, places, by = column_gradients(between, active, factor, count, pc, H, None)
+        rows, places, by = column_gradients(between, active, order, count, pc, H, None)
         add_columns(rows, places, by, shapes, columns)
     changes, field = np.zeros((8, 10)), np.empty(H.shape)
     functional_gradients(lam, columns, changes[:4])

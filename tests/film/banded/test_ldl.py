@@ -7,8 +7,8 @@ import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
-from exudyn_ehd.film.banded.factors import assemble_band, factor_band
-from exudyn_ehd.film.banded.numbering import first_changed_row, number_cells
+from exudyn_ehd.film.banded.factors import assemble_band
+from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import solve_linear
 
@@ -42,10 +42,10 @@ def test_against_sparse_solution(make_film, dense_matrix, name, cut, n, m):
         f = make_film(seed, n, m, cut=cut)
         active = _active_sets(n, m, seed)[name]
         w = Workspace(n, m)
-        w.band[:] = np.nan  # nothing may be read that was not written
+        w.upper[:] = np.nan  # nothing may be read that was not written
         P = np.where(active, 0.0, np.random.default_rng(seed).normal(size=(n, m)))
         known = P.copy()
-        ok, count, width = solve_linear((f.kx, f.kz, f.b), active, w.factor, w.unknowns, P)
+        ok, count, width = solve_linear((f.kx, f.kz, f.b), active, w.symmetric, w.unknowns, P)
         assert ok
         assert count == active.sum()
         assert width <= 2 * m
@@ -69,45 +69,13 @@ def test_numbering_and_band_are_the_matrix(make_film, dense_matrix, cut):
             assert sorted(w.order[:count]) == list(np.flatnonzero(active))
             assert (w.number[~active] == -1).all()
             np.testing.assert_array_equal(w.number.ravel()[w.order[:count]], np.arange(count))
-            assemble_band(f.kx, f.kz, w.number, w.order, count, width, 0, w.band)
+            assemble_band(f.kx, f.kz, w.number, w.order, count, width, w.upper)
             A = np.zeros((count, count))
             for r in range(count):
                 for d in range(min(width, count - 1 - r) + 1):
-                    A[r, r + d] = A[r + d, r] = w.band[r, d]
+                    A[r, r + d] = A[r + d, r] = w.upper[r, d]
             o = w.order[:count]
             np.testing.assert_allclose(A, dense_matrix(f.kx, f.kz)[np.ix_(o, o)], atol=1e-13)
-
-
-@pytest.mark.parametrize("cut", (True, False))
-def test_factoring_behind_the_first_change_gives_the_same_bits(make_film, cut):
-    n, m = 24, 7
-    f = make_film(11, n, m)
-    rng = np.random.default_rng(12)
-    for _ in range(60):
-        old = np.ones((n, m), dtype=bool)
-        if cut:
-            old[2:5] = False
-        old &= rng.random((n, m)) > 0.03
-        new = old.copy()
-        # changes anywhere, near the end, and none
-        i, j = int(rng.integers(n)), int(rng.integers(m))
-        new[i, j] = not new[i, j]
-        w, full = Workspace(n, m), Workspace(n, m)
-        _, count, width = _factor(f, old, w, 0, 1)
-        w.old_order[:] = w.order
-        got, expected = _factor(f, new, w, count, width), _factor(f, new, full, 0, 1)
-        assert got == expected
-        k, reach = got[1], got[2] + 1
-        np.testing.assert_array_equal(w.band[:k, :reach], full.band[:k, :reach])
-        np.testing.assert_array_equal(w.inv_diag[:k], full.inv_diag[:k])
-
-
-def _factor(film, active, w, old_count, old_width):
-    """Factor of the active vertices, from the first row that differs from the one at hand."""
-    count, width = number_cells(active, film.kx, w.order, w.number)
-    first = first_changed_row(w.order, w.old_order, old_count, count, width) if width == old_width else 0
-    assemble_band(film.kx, film.kz, w.number, w.order, count, width, first, w.band)
-    return factor_band(w.band, count, width, first, w.inv_diag), count, width
 
 
 def test_a_singular_film_is_refused(make_film):
@@ -115,5 +83,5 @@ def test_a_singular_film_is_refused(make_film):
     f = make_film(9)
     w = Workspace(12, 6)
     zero, active = np.zeros_like(f.kx), np.ones((12, 6), dtype=bool)
-    ok, _, _ = solve_linear((zero, zero, f.b), active, w.factor, w.unknowns, np.zeros((12, 6)))
+    ok, _, _ = solve_linear((zero, zero, f.b), active, w.symmetric, w.unknowns, np.zeros((12, 6)))
     assert not ok

@@ -9,8 +9,8 @@ from exudyn_ehd import FullSommerfeld, Gumbel, InputError, Status, SwiftStieber,
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
 from exudyn_ehd.film.cavitation.rupture_line import straight
+from exudyn_ehd.film.solvers.newton import solve_rupturing
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.film.solvers.swift_stieber import find_film
 
 
 def _random_gaps(solver, rng):
@@ -129,10 +129,10 @@ def test_clip_pressure_twin():
 def test_a_singular_start_is_reported():
     w, shape = Workspace(8, 4), (8, 4)
     fixed, zero, active = np.zeros(shape, dtype=bool), np.zeros(shape), np.ones(shape, dtype=bool)
-    line, P = straight(shape), np.zeros(shape)
-    ok, steps, _, _ = find_film((zero, zero, zero), fixed, 0.0, False, 1, False, line, active, w.factor, w.unknowns, P)
-    assert not ok
-    assert steps == 1
+    film, places = (np.zeros((15, *shape)), fixed, zero, straight(shape)), (zero.copy(), w.residual, w.unknowns, None)
+    state = w.u, w.above, None
+    found, *_ = solve_rupturing(w.size, 0.0, False, False, zero, active, state, film, w.symmetric, places)
+    assert not found
 
 
 @pytest.mark.parametrize("spec", (Gumbel, SwiftStieber))

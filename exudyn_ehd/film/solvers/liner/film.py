@@ -65,8 +65,9 @@ from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.film import FilmArrays
 from exudyn_ehd.film.solvers.liner.line import TOUCHING, AtLine, FilmLine, GapChain
 from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements, find_slopes, liner_residual
-from exudyn_ehd.film.solvers.newton import FOUND, GOES_ON, begin, factor_film, proceed, solve_film
-from exudyn_ehd.film.solvers.sets import course_from, is_exact, pseudo_time
+from exudyn_ehd.film.solvers.matrix import factor_film
+from exudyn_ehd.film.solvers.newton import GOES_ON, begin, course_from, end_of, lift, proceed, solve_film
+from exudyn_ehd.film.solvers.sets import pseudo_time
 from exudyn_ehd.status import Status
 
 
@@ -102,20 +103,20 @@ class LinerFilm(WinklerElements):
             self.thin.place(film.grid, film.flow_x)
         # whether the pressure changes the deflection of the liner alone
         self.plain = self.contact is None and self.limiter is None and self.oil is None and not film.flux_effects
-        self.term_fields, self.film_fields = s.term_fields, s.film
+        self.film_fields = s.film
         self.by, self.by_speed = np.zeros((4, w.order.size)), np.zeros((3, w.order.size))
         self.fill = s.fill if s.kind == OIL else np.ones(shape)
         # the film at the pressure of the rupture line inside the cells
         self.at_line = AtLine((film.H, film.HF), None, None)
         # what the kernels of `exudyn_ehd.film.solvers.newton` take
-        self.state, self.places = (w.u, w.above, self.fill), w.places_of(self.P)
-        self.residual = self.places[1]
+        self.residual, self.places = w.residual, (self.P, w.residual, w.unknowns, w.before)
         self.take_kind(s.kind)
 
     def take_kind(self, kind: int) -> None:
         """Solve films of this kind from now on, see `exudyn_ehd.film.cavitation.states`."""
         self.kind, self.film.work.ready = kind, False
-        self.oil_fields = (self.fill if kind == OIL else None), *self.densities
+        fill, w = self.fill if kind == OIL else None, self.film.work
+        self.state, self.oil_fields = (w.u, w.above, fill), (fill, *self.densities)
 
     def forget_gradients(self) -> None:
         """Let the sliding alone thin the oil."""
@@ -147,7 +148,7 @@ class LinerFilm(WinklerElements):
         if not self.smallest > 0.0:
             return np.inf, self.smallest
         self._set_links(self.P)
-        fields = self.load_fields, self.gap_fields, self.term_fields, f.grid.fixed, self.known
+        fields = self.load_fields, self.gap_fields, f.system.fields, f.grid.fixed, self.known
         rates, pc = tuple(self.rates), f.system.cavity_pressure
         chooses = self.kind == RUPTURE
         norm = liner_residual(self.P, fill, rho, *fields, rates, self.beta, pc, chooses, f.system.curve, self.residual)
@@ -197,21 +198,21 @@ class LinerFilm(WinklerElements):
         f, w, s = self.film, self.film.work, self.film.system
         # the film from sliding alone has terms of its own
         s.terms.late[:], s.terms.known[:] = s.late, 0.0
-        course, outcome = course_from(w, w.ready and w.warm), GOES_ON
+        size = w.size
         w.ready = w.exact = False
-        rest = self.kind, s.base, w.active, self.state, self.oil_fields, None, self.film_fields, self._seen
+        rest = w.active, self.state, self.oil_fields, None, self.film_fields, self._seen
         if self.plain and self.kind != OIL:
             numbers = s.cavity_pressure, f.vx, f.vz, self.beta
             plain = numbers, f.closure.clips, self.rigid, self.true_gap, self.deflection_old, self.known
-            outcome, course = solve_film(course, *rest, w.matrix, self.places, plain)
-        else:
-            begin(self.film_fields, self.kind, s.base, w.active, self.state, self.P)
+            return w.take_end(*solve_film(self.kind, s.base, True, size, *rest, w.matrix, self.places, plain))
+        begin(self.film_fields, self.kind, s.base, True, w.active, self.state, self.P)
+        outcome, course = GOES_ON, course_from(size)
         while outcome == GOES_ON:
             norm, gap = self.balance()
-            outcome, course = proceed(norm, gap, course, *rest, self._response, w.matrix, self.places)
-        steps, *_, w.count, w.width, _ = course
-        w.ready, w.exact = outcome == FOUND, is_exact(course)
-        return w.ready, steps
+            response = self._response, w.matrix, self.places
+            outcome, course = proceed(norm, gap, course, self.kind, s.base, *rest, *response)
+        lift(f.grid.fixed, w.above, s.base, self.P)
+        return w.take_end(*end_of(outcome, course))
 
     @property
     def _seen(self) -> tuple[tuple[object, ...], tuple[object, ...]]:
@@ -241,7 +242,7 @@ class LinerFilm(WinklerElements):
     def factor_solution(self) -> None:
         """Make the factor in the workspace that of the last solution."""
         w, fields = self.film.work, (self.kind, self.P, self.oil_fields, None, self.film_fields, self._seen)
-        _, w.count, w.width = factor_film(*fields, self._response, w.matrix, w.active)
+        _, w.count, w.width = factor_film(*fields, self._response, w.matrix, w.active, (False, w.count, w.width))
 
     def finish(self) -> None:
         """Set the fields of a solution: rupture line, clipped pressure, gap derivatives, rates, right-hand side."""

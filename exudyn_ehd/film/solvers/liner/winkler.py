@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.cavitation.oil_line import curve_of
 from exudyn_ehd.film.cavitation.states import OIL, take_sink
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.reynolds.balance import carried_fill, film_balance, terms_of, upstream, violation
@@ -61,7 +60,7 @@ def liner_residual(
     bend_links(gaps, film)
     film_balance(P, fill, rho, film, out)
     if complementary:
-        take_sink(curve_of(curve), out)
+        take_sink(curve[0], curve[6], 1.0, out)
     return violation(out, P, fixed, pc, complementary)
 
 
