@@ -1,18 +1,19 @@
 """Bores on parts of the circle: lobes with preload, fixed pads, pressure dams; their film grid and their shape.
 
-Every arc is a film of its own between two edges of given pressure. One grid holds the columns of all arcs side by side,
-without a link from the last column of an arc to the first one of the next.
+Every arc is a separate film between two edges of given pressure. One grid contains the columns of all arcs, without a
+link from the last column of an arc to the first one of the next.
 
-With the clearance c_b of the assembled bearing, the preload m of an arc and the angle theta_o at which its bore is
-nearest to a concentric journal, the arc is a circle about a point at the distance ``m c_p`` from the bearing's centre,
-on the side away from theta_o, with
+Let c_b be the clearance of the assembled bearing, m the preload of an arc, and theta_o the angle at which its bore is
+nearest to a concentric journal. The centre of the arc's circle lies at the distance ``m c_p`` from the bearing's
+centre, on the side away from theta_o, with
 
     c_p = c_b / (1 - m),    h = c_p - m c_p cos(theta - theta_o) = c_b + (c_p - c_b) (1 - cos(theta - theta_o))
 
 around a concentric journal (J. W. Lund, K. K. Thomsen, A Calculation Method and Data for the Dynamic Coefficients of
-Oil-Lubricated Journal Bearings, ASME 1978). A dam adds its depth from the leading edge on, up to a step (J. C.
-Nicholas, P. E. Allaire, Analysis of Step Journal Bearings - Finite Length, Stability, ASLE Trans. 23 (1980) 197). On
-its step lies a column of the grid, on either side two rows next to each other, one in the dam and one on the land.
+Oil-Lubricated Journal Bearings, ASME 1978). A dam adds its depth to the gap from the leading edge to a step (J. C.
+Nicholas, P. E. Allaire, Analysis of Step Journal Bearings - Finite Length, Stability, ASLE Trans. 23 (1980) 197). A
+column of the grid lies on the step. At either side of the dam lie two rows close to each other, one in the dam and one
+on the land.
 """
 
 from __future__ import annotations
@@ -28,12 +29,14 @@ from exudyn_ehd.film.grid import FilmGrid, axial_metric, axial_vertices, rows_be
 from exudyn_ehd.film.reynolds.gap import gap_slopes
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number, require_type
 
-# Smallest arc and smallest part of one before or behind a step, rad; fewest intervals on them.
+# Smallest extent of an arc, and of its parts before and behind a step, rad; smallest numbers of intervals on an arc and
+# on such a part. Smaller values reduce the accuracy.
 SMALLEST_ARC, FEWEST_ON_ARC, FEWEST_ON_PART = 0.05, 8, 4
-# Angle up to which two edges are one, rad; share of the length that a dam leaves for its lands at least.
+# Angle below which two edges coincide, rad: larger than round-off, smaller than any groove. Smallest length of a dam's
+# lands over the bearing's length: smaller ones cannot hold the pressure of the dam.
 TOUCHING, LEAST_LANDS = 1e-9, 0.02
-# Distance of the two rows at the side of a dam, and smallest distance of two sides, over the length. Smaller: more
-# round-off; larger: a slope in place of a step.
+# Distance of either row from the side of a dam, and smallest distance of two sides with rows of their own, over the
+# half length. Smaller values cause round-off, larger ones a slope instead of a step.
 SIDE, BETWEEN_SIDES = 2e-4, 1e-3
 # Usual width of grooves between lobes, rad; 20 degrees.
 GROOVE = 0.35
@@ -74,7 +77,7 @@ class Arc(Checked):
     """Bore on a part of the circle: a lobe, a partial bearing or a fixed pad, with given pressures at its two edges.
 
     The film begins at the leading edge, where oil enters if the spin is positive, and ends at the trailing edge.
-    Between arcs there is no bore: these are the drain and feed grooves. Only with ``film=FiniteLength(...)`` and
+    Between arcs there is no bore, but drain and feed grooves. Only with ``film=FiniteLength(...)`` and
     ``inlet=Periodic()``; not with ``journal``, a ``bush`` other than `ElasticLiner`, and a bush that conducts
     (`FilmEnergy.bush`). Each arc gets its share of the columns of the whole circle. Areas of ``supply`` lie in the
     bore of one arc, off its edges, on arcs without a dam.
@@ -349,8 +352,8 @@ def arc_grid(
     stretch: float,
     rows: tuple[np.ndarray, np.ndarray] | None,
 ) -> FilmGrid:
-    """Film grid of arcs side by side, each with its share of ``n_theta`` columns and one on either edge; the rest as
-    `bearing_grid`."""
+    """Return the film grid of all arcs: an arc has ``n_theta`` times its fraction of the circle as intervals, and
+    columns on both edges; other parameters as for `bearing_grid`."""
     if rows is None:
         dams = [arc.dam.length / length for arc in arcs if arc.dam is not None]
         z, weight_z = (0.5 * length / radius * part for part in _rows(dams, n_z, stretch))
@@ -365,7 +368,8 @@ def arc_grid(
 
 
 def _rows(dams: list[float], n_z: int, stretch: float) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and weights in [-1, 1] for dams of these lengths over the bearing's, two rows at either side of each."""
+    """Return rows in [-1, 1] and their weights, for dams of these lengths over that of the bearing, with two rows at
+    either side of a dam."""
     sides: list[float] = []
     for side in sorted(dams):
         sides += [side] if not sides or side - sides[-1] > BETWEEN_SIDES else []
@@ -376,7 +380,8 @@ def _rows(dams: list[float], n_z: int, stretch: float) -> tuple[np.ndarray, np.n
 
 
 def _columns(arc: Arc, n_theta: int) -> tuple[np.ndarray, ...]:
-    """Angles of the columns of an arc and of the links behind them, widths, inverse distances, weights, (n,) each."""
+    """Return the angles of an arc's columns and of the links behind them, widths, inverse distances and weights, (n,)
+    each."""
     half, count = 0.5 * arc.extent, max(FEWEST_ON_ARC, math.ceil(n_theta * arc.extent / math.tau))
     if arc.step is None:
         x, weight = axial_vertices(count, half, 0.0)
@@ -392,7 +397,7 @@ def _columns(arc: Arc, n_theta: int) -> tuple[np.ndarray, ...]:
 
 
 def columns_of_arcs(theta: np.ndarray, arcs: tuple[Arc, ...]) -> list[slice]:
-    """Columns of every arc among the angles theta (n,) of a film."""
+    """Return the columns of every arc as slices of the angles theta (n,) of a film."""
     found, first = [], 0
     for arc in arcs:
         behind = first + int(np.argmax(theta[first:] > arc.start + arc.extent - TOUCHING)) + 1
@@ -402,12 +407,12 @@ def columns_of_arcs(theta: np.ndarray, arcs: tuple[Arc, ...]) -> list[slice]:
 
 
 def rows_at_sides(grid: FilmGrid) -> np.ndarray:
-    """Return whether the links along z (m - 1,) of a grid with dams lie between the two rows at a side."""
+    """Return whether links along z (m - 1,) lie between the two rows at a side of a dam."""
     return np.asarray(grid.link_z * SIDE * float(grid.z[-1] - grid.z[0]) > 0.5)
 
 
 def mixing_grooves(grid: FilmGrid) -> list[np.ndarray]:
-    """Vertices (n, m) on both sides of every groove between arcs; none of a ring."""
+    """Return masks (n, m) of the vertices on both sides of every groove between arcs; an empty list for a ring."""
     grooves = []
     for last, first in zip(grid.edges[:, 1], np.roll(grid.edges[:, 0], -1), strict=True):
         grooves.append(np.zeros(grid.shape, dtype=np.bool_))
@@ -428,10 +433,10 @@ class LobeTerm:
     Attributes
     ----------
     values, between : (n, m) arrays
-        Scaled addition to the gap at the vertices, and on links what it differs from the mean of their ends.
+        Scaled addition to the gap at the vertices; on links its difference from the mean of both ends.
     slopes : (2, n, m) array
-        Slopes of dams along theta and z, less those of `gap_slopes`, that with the weights of the grid sum up to the
-        steps: all at the column of the step, and half on either row of a side.
+        Slopes of dams along theta and z, less those of `gap_slopes`. Their sum with the grid's weights is the height of
+        a step. The slope of a step in theta is at its column, that of a side half on either of its two rows.
     """
 
     def __init__(self, arcs: tuple[Arc, ...], grid: FilmGrid, clearance: float) -> None:
@@ -448,7 +453,7 @@ class LobeTerm:
                 at_step = np.abs(x - step) < TOUCHING
                 dams[part] = np.outer(np.where(at_step, 0.5, x < step), depth)
                 links[part] += np.outer(face < step, depth)
-                # rows outside of seals have no weight, and no slopes
+                # rows outside of seals have no weight: slope 0
                 np.divide(
                     -np.outer(at_step, depth * grid.weight_z),
                     grid.weight[part],
@@ -466,6 +471,6 @@ class LobeTerm:
 
 
 def lobe_term(arcs: tuple[Arc, ...], grid: FilmGrid, clearance: float) -> LobeTerm | None:
-    """`LobeTerm` of arcs; None where all of them are parts of one circle."""
+    """Return the `LobeTerm` of arcs; None if all of them are parts of one circle."""
     shaped = any(arc.preload > 0.0 or arc.dam is not None for arc in arcs)
     return LobeTerm(arcs, grid, clearance) if shaped else None

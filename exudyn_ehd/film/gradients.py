@@ -1,15 +1,15 @@
 """Derivatives of a film's balances, and of other sums over it, to the gaps around a vertex, at fixed unknowns.
 
-With the derivatives DX and DZ of a link's flow to its gap (`exudyn_ehd.film.reynolds.link_derivatives`), and AC and AR
-of the storage, the balance of vertex (i, j) between rigid surfaces changes with the gap by
+Let DX and DZ be the derivatives of a link's flow to its gap (`exudyn_ehd.film.reynolds.link_derivatives`), AC and AR
+those of the storage to the gap and to its rate. The balance of vertex (i, j) between rigid surfaces changes by
 
     dr = DX_i dHF_i - DX_i-1 dHF_i-1 + DZ_j dHZ_j - DZ_j-1 dHZ_j-1 + AC dH + AR dH_t,   HF gap on links in theta,
     HZ mean over the two ends of a link in z,
 
-and with the surfaces' speeds likewise. On a liner links follow the gaps at their ends besides. A line inside the cells
-adds entries of the same form. The gap is a sum of shapes, ``H = 1 + sum q_k S_k``, whose coefficients q are the
-journal's pose or a bore's coordinates: derivatives to q are those to the gap times S, at vertices and on links. An
-adjoint functional's gradient is ``-lam . dr``.
+and similarly with the speeds of the surfaces. With an elastic liner the flow over a link also depends on the gaps at
+its ends. A rupture line inside the cells adds entries of the same form. The gap is a sum of shapes,
+``H = 1 + sum q_k S_k``, whose coefficients q are the journal's pose or a bore's coordinates. Derivatives to q are those
+to the gap times S, at vertices and on links. The gradient of a functional with the adjoint lam is ``-lam . dr``.
 """
 
 from __future__ import annotations
@@ -22,8 +22,9 @@ from scipy.sparse import csr_matrix
 
 from exudyn_ehd.film.kernels import FAST
 
-# Weights of a vertex and its neighbours (columns: itself, next and last in theta, next and last in z) by
-# `Gradients.by` (rows) for a gap or a rate of vertices, which on links in theta is the mean of both ends.
+# Factors that convert `Gradients.by` (rows) to derivatives to values at vertices (columns: the vertex, the next and the
+# previous one in theta, the next and the previous one in z): for the gap, and for the rate. The gap on a link in theta
+# is the mean of both ends.
 _BY_GAP, _BY_RATE = np.zeros((2, 10, 5))
 _BY_GAP[0, :2] = _BY_GAP[1, :3:2] = 0.5
 _BY_GAP[[2, 3, 4, 8, 9], [0, 3, 4, 1, 2]] = _BY_RATE[5, 0] = 1.0
@@ -35,11 +36,11 @@ class Gradients(NamedTuple):
     Attributes
     ----------
     rows, places : (c,) int arrays
-        Number of the sum to which an entry adds, such as an unknown's balance, and the flat vertex that it lies at.
+        Number of the sum to which an entry is added, such as the balance of an unknown, and flat index of its vertex.
     by : (10, c) array
-        To the gaps on the links in theta from the vertex and to it, to the gaps at the vertex itself and at the next
-        and the last one in z, to the vertex' own rate, to vx and vz, to the gaps at the next and the last vertex in
-        theta.
+        Derivatives, by row: (0, 1) to the gaps on the links in theta behind and before the vertex; (2, 3, 4) to the
+        gaps at the vertex, and at the next and the previous one in z; (5) to the rate of the gap at the vertex; (6, 7)
+        to vx and vz; (8, 9) to the gaps at the next and the previous vertex in theta.
     """
 
     rows: np.ndarray
@@ -47,12 +48,17 @@ class Gradients(NamedTuple):
     by: np.ndarray
 
     def weighed(self, weights: np.ndarray, rows: np.ndarray | None = None) -> Gradients:
-        """Sums with ``weights`` (n, m), each to the row of its vertex in ``rows`` (n m,); None: one sum over all."""
+        """Multiply the entries by ``weights`` (n, m) and add each to the sum ``rows`` (n m,) of its vertex; None: one
+        sum over all."""
         at = np.zeros_like(self.places) if rows is None else rows[self.places]
         return Gradients(at, self.places, self.by * weights.reshape(-1)[self.places])
 
     def to_true_gap(self, slope: np.ndarray, bend: np.ndarray, face_slope: np.ndarray) -> Gradients:
-        """Gradients to the true gap, of those to the film's gap that a limiter makes of it, with its slopes (n, m)."""
+        """Convert derivatives to the film's gap of a limiter into derivatives to the true gap.
+
+        ``slope``, ``face_slope`` (n, m): derivatives of the film's gap to the true gap at vertices and on links in
+        theta; ``bend``: second derivative at vertices, times the rate of the true gap.
+        """
         (n, m), by = slope.shape, self.by.copy()
         i, j = np.divmod(self.places, m)
         by[0] *= face_slope[i, j]
@@ -66,17 +72,18 @@ class Gradients(NamedTuple):
         return self._replace(by=by)
 
     def columns(self, shapes: np.ndarray, count: int) -> np.ndarray:
-        """Derivatives (10, count) of the sums to (scaled pose, scaled rates, vx, vz), for `FilmGrid.gap_shapes`."""
+        """Derivatives (10, count) of the sums to (scaled pose, scaled rates, vx, vz); ``shapes``:
+        `FilmGrid.gap_shapes`."""
         out = np.zeros((10, count))
         add_columns(self.rows, self.places, self.by, shapes, out)
         return out
 
     def matrix(self, shape: tuple[int, int], count: int, by_gap: float, by_rate: float) -> csr_matrix:
-        """``by_gap d/dH + by_rate d/dH_t`` (count, n m) of the sums on n columns and m rows, see `_BY_GAP`."""
+        """Return ``by_gap d/dH + by_rate d/dH_t`` (count, n m) of the sums, to gaps and rates at the vertices."""
         (n, m), at = shape, self.places
         column = at // m
         next_x, last_x = at + np.where(column + 1 < n, m, m - n * m), at - np.where(column > 0, m, m - n * m)
-        # there is nothing behind the ends
+        # entries for vertices beyond the ends are 0
         around = np.stack((at, next_x, last_x, np.minimum(at + 1, n * m - 1), np.maximum(at - 1, 0)), axis=1)
         weights = self.by.T @ (by_gap * _BY_GAP + by_rate * _BY_RATE)
         return csr_matrix((weights.ravel(), (np.repeat(self.rows, 5), around.ravel())), shape=(count, n * m))
@@ -87,9 +94,9 @@ class Gradients(NamedTuple):
         Returns
         -------
         cell, face, rate : (k, n, m) arrays
-            To the gaps at vertices and on links in theta, and to the gap's rate at vertices.
+            Derivatives to the gaps at vertices and on links in theta, and to the gap's rate at vertices.
         speed : (k, 2) array
-            To vx and vz.
+            Derivatives to vx and vz.
         """
         out = *np.zeros((3, len(rows), *shape)), np.zeros((len(rows), 2))
         _add_fields(rows, self.rows, self.places, self.by, *out)
@@ -97,30 +104,33 @@ class Gradients(NamedTuple):
 
 
 def join(a: Gradients, b: Gradients) -> Gradients:
-    """Entries of both."""
+    """Return the entries of both."""
     rows, places = np.concatenate((a.rows, b.rows)), np.concatenate((a.places, b.places))
     return Gradients(rows, places, np.concatenate((a.by, b.by), axis=1))
 
 
 @njit(cache=True, fastmath=FAST)
 def _ends(by_h, by_d, a, b, follows, gap):
-    """Return the derivatives of a link's flow to the undeformed gaps at its ends a and b, by its gap, of which row
-    ``gap`` of ``follows`` tells how it follows, and by E."""
+    """Return the derivatives of a link's flow to the undeformed gaps at its ends a and b.
+
+    ``by_h``, ``by_d``: derivatives to the link's gap and to d, see `exudyn_ehd.film.reynolds.link_derivatives`. Row
+    ``gap`` of ``follows`` is the derivative of the gap to the undeformed one, row 1 that of E.
+    """
     here, there = by_h * follows[gap, a] - by_d * follows[1, a], by_h * follows[gap, b] + by_d * follows[1, b]
     return 0.5 * here, 0.5 * there
 
 
 @njit(cache=True, fastmath=FAST)
 def link_rows(order, count, m, by, by_speed, follows, storage, out):
-    """Derivatives ``out`` (10, count) of the balances at vertices ``order``, see `Gradients.by`.
+    """Set the derivatives ``out`` (10, count) of the balances at vertices ``order``, see `Gradients.by`.
 
     Parameters
     ----------
     by, by_speed : (4, n m) and (3, n m) arrays
-        Of the links' flows, `exudyn_ehd.film.reynolds.link_derivatives`.
+        Derivatives of the links' flows, see `exudyn_ehd.film.reynolds.link_derivatives`.
     follows : (4, n m) array or None
-        How a liner's surfaces follow the undeformed gap: its deflection, E, the film's gap, and the film's gap on a
-        link its true gap; None: rigid surfaces.
+        With a liner: derivatives of deflection, E and film gap to the undeformed gap, and of the film's gap on a link
+        to the true gap there; None: rigid surfaces.
     storage : two (n, m) arrays
         Derivatives of the storage to the gap's rate and to the gap.
     """
@@ -162,7 +172,7 @@ def link_rows(order, count, m, by, by_speed, follows, storage, out):
 
 @njit(cache=True, fastmath=FAST)
 def add_columns(rows, places, by, shapes, out):
-    """Add the sums' derivatives (10, count) to a motion, see `Gradients.columns`."""
+    """Add the derivatives (10, count) of the sums to the motion to ``out``, see `Gradients.columns`."""
     at, link = shapes[0].reshape(-1), shapes[1].reshape(-1)
     # flat unsigned indices need no check of their sign
     size, column, row = np.uint64(at.size), np.uint64(4 * shapes.shape[2]), np.uint64(4)
@@ -172,7 +182,7 @@ def add_columns(rows, places, by, shapes, out):
             c + column if c + column < size else c + column - size,
             c - column if c >= column else c + size - column,
         )
-        # there is nothing behind the ends
+        # entries for vertices beyond the ends are 0
         above, below = c + row if c + row < size else c, c - row if c >= row else c
         f0, f1, own, a0, a1, rate, x0, x1 = (
             by[0, e],
@@ -199,7 +209,7 @@ def _add_fields(lam, rows, places, by, cell, face, rate, speed):
     _, n, m = cell.shape
     for e in range(rows.size):
         i, j = places[e] // m, places[e] % m
-        # there is nothing behind the ends
+        # entries for vertices beyond the ends are 0
         on, back, above, below = (i + 1) % n, (i - 1) % n, min(j + 1, m - 1), max(j - 1, 0)
         for k in range(len(lam)):
             w = -lam[k, rows[e]]
@@ -217,7 +227,7 @@ def _add_fields(lam, rows, places, by, cell, face, rate, speed):
 
 @njit(cache=True, fastmath=FAST)
 def functional_gradients(lam, columns, out):
-    """Gradients ``-lam . dr`` (k, 10) of adjoint functionals lam (k, count), for dr (10, count)."""
+    """Set the gradients ``-lam . dr`` (k, 10) of k functionals with the adjoints lam (k, count), for dr (10, count)."""
     for k in range(lam.shape[0]):
         own = lam[k]
         for q in range(columns.shape[0]):

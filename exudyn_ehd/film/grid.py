@@ -5,13 +5,13 @@ Lengths are divided by the journal radius R (so that x = theta), gaps by the rad
 
 * theta: n vertices, one control volume of width 2 pi / n around each, links between neighbours, closed ring.
 * z: n_z intervals, n_z + 1 vertices, the two end vertices on the bearing's ends. The vertices are stretched towards the
-  ends, ``z = L/2 sin(pi a s / 2) / sin(pi a / 2)``, s uniform in [-1, 1], because the axial parabola is resolved
-  exactly by the scheme while the load near the ends is not. Integrals over z use Gregory's end weights 3/8, 7/6, 23/24
-  in s (fourth order), corrected so that 1, z^2 and z^4 are integrated exactly: areas and the load of an axial parabola,
-  aligned or tilted, then hold to rounding on any grid. Below four intervals: the trapezoidal rule.
+  ends, ``z = L/2 sin(pi a s / 2) / sin(pi a / 2)``, s uniform in [-1, 1]. The scheme is exact for an axial parabola,
+  but not for the load near the ends. Integrals over z use Gregory's end weights 3/8, 7/6, 23/24 in s (fourth order),
+  corrected so that 1, z^2 and z^4 are integrated exactly. Areas and the load of an axial parabola, aligned or tilted,
+  are then exact to round-off on any grid. Below four intervals the trapezoidal rule is used.
 
-Where supply areas have edges along z, rows lie on them, and every part between two edges has stretched rows and weights
-of its own (`rows_between`).
+Where supply areas have edges along z, rows lie on the edges. Every part between two edges has its own stretched rows
+and weights (`rows_between`).
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ import numpy as np
 
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, require_bool, require_count, require_number
 
-# Check of the axial stretching of a film model's grid.
+# Check of a film model's axial stretching: larger values, up to 0.95, refine the ends more.
 STRETCH = partial(NOT_NEGATIVE, at_most=0.95, hint="0.75 suits most bearings.")
 
 
 class Mesh(NamedTuple):
     """Metric of a `FilmGrid`, as arrays of the same names.
 
-    Kernels are handed plain tuples and give them their names: to look at a tuple with names takes numba as long as such
-    a kernel runs.
+    Kernels receive plain tuples and convert them to this named one: when called from Python, numba would take as long
+    for a named tuple as for running such a kernel.
     """
 
     width_x: np.ndarray
@@ -62,18 +62,18 @@ class FilmGrid:
     weight_z : (m,) array
         Integration weights along z.
     weight : (n, m) array
-        Integration weights (area), next to the edges of supply areas no product of those in theta and z.
+        Integration weights (area); products of weights in theta and z, except next to the edges of supply areas.
     lands : (n, m) array or None
-        Integration weights of what acts between the surfaces alone, outside of supply areas; None: ``weight``.
+        Integration weights of quantities outside of supply areas, such as the shear; None: ``weight``.
     fixed : (n, m) bool array
         Vertices with prescribed pressure.
     reference_length : float
         R in m.
     cuts : (2, n, m) array or None
-        What links in theta and z conduct over what they would along ``link_x`` and ``link_z``, because they end at the
-        edge of a supply area; None: nowhere.
+        Factors on the conductances of links in theta and z that end at the edge of a supply area, and are therefore
+        shorter than ``link_x`` and ``link_z`` tell; None: no such links.
     seals : pair of floats or None
-        What seals at both ends conduct per length around, over clearance and R, see
+        Scaled conductances of the seals at both ends per circumferential length, see
         `exudyn_ehd.film.supply.restrictors.sealed_grid`; None: open ends.
     """
 
@@ -114,7 +114,7 @@ class FilmGrid:
 
     @cached_property
     def edges(self) -> np.ndarray:
-        """First and last column (k, 2) of every part between open links; empty for a ring."""
+        """First and last column (k, 2) of every arc: a part between missing links; empty for a ring."""
         last = np.flatnonzero(self.link_x == 0.0)
         return np.column_stack(((np.roll(last, 1) + 1) % self.x.size, last))
 
@@ -125,18 +125,18 @@ class FilmGrid:
 
     @cached_property
     def beside(self) -> tuple[np.ndarray, np.ndarray]:
-        """Columns before and behind every column (n,), itself where there is no link."""
+        """Columns before and behind every column (n,); the column itself where there is no link."""
         here, ends = np.arange(self.x.size), self.link_x == 0.0
         return np.where(np.roll(ends, 1), here, np.roll(here, 1)), np.where(ends, here, np.roll(here, -1))
 
     @cached_property
     def differences_z(self) -> np.ndarray:
-        """Slopes in z at the rows by the values at the rows (m, m), see `exudyn_ehd.film.reynolds.gap.gap_slopes`."""
+        """Matrix (m, m) from values at the rows to slopes in z, see `exudyn_ehd.film.reynolds.gap.gap_slopes`."""
         return np.asarray(np.gradient(np.eye(self.z.size), self.z, axis=0))
 
     @cached_property
     def mesh(self) -> tuple[np.ndarray, ...]:
-        """The metric for kernels, as in `Mesh`."""
+        """Metric for kernels, fields of `Mesh`."""
         return self.width_x, self.width_z, self.link_x, self.link_z
 
     @cached_property
@@ -146,19 +146,21 @@ class FilmGrid:
 
     @cached_property
     def moments(self) -> np.ndarray:
-        """cos, sin, z cos, z sin and 1 at the vertices of a bearing, (5, n, m)."""
+        """Fields cos, sin, z cos, z sin and 1 at the vertices of a bearing, (5, n, m)."""
         flat, around = np.ones(self.shape), np.array(self.directions[:2])[:, :, None]
         return np.concatenate((around * flat, around * self.z, flat[None]))
 
     @cached_property
     def gap_shapes(self) -> np.ndarray:
-        """Scaled gap (2, n, m, 4) by the scaled pose of a bearing's journal, at vertices and on links in theta."""
+        """Derivatives (2, n, m, 4) of the scaled gap, at vertices and on links in theta, to the journal's scaled
+        pose."""
         normals = -np.array(self.directions[:4]).reshape(2, 2, -1).transpose(0, 2, 1)[:, :, None, None, :]
         heights = np.stack((np.ones_like(self.z), self.z), axis=1)[None, None, :, :, None]
         return np.ascontiguousarray((normals * heights).reshape(2, *self.shape, 4))
 
     def by_pose(self, fields: np.ndarray, on_links: int = 0) -> np.ndarray:
-        """Sums (k, 4) of fields (k, n, m) times the derivatives of the gap at vertices, 1: on links in theta."""
+        """Return the sums (k, 4) of fields (k, n, m) times `gap_shapes`; ``on_links``: 0 at vertices, 1 on links in
+        theta."""
         by_pose: np.ndarray = fields.reshape(len(fields), -1) @ self.gap_shapes[on_links].reshape(-1, 4)
         return by_pose
 
@@ -179,7 +181,7 @@ def axial_metric(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _mirrored(values: np.ndarray, sign: float) -> np.ndarray:
-    """Values (m,) along z that are their own mirror image but for rounding, as ones that are it to the last bit."""
+    """Make values (m,) along z exactly symmetric, times ``sign``, if they are so up to round-off."""
     image = sign * values[::-1]
     same = np.allclose(values, image, rtol=0.0, atol=1e-14 * float(np.abs(values).max()))
     return 0.5 * (values + image) if same else values
@@ -195,7 +197,7 @@ def tensor_grid(
     weight_x: np.ndarray | None = None,
     weight_z: np.ndarray | None = None,
 ) -> FilmGrid:
-    """Grid of columns x (n,) and rows z (m,) with their widths, links and weights, as for `FilmGrid`."""
+    """Return the grid of columns x (n,) and rows z (m,); other parameters as for `FilmGrid`."""
     z = _mirrored(z, -1.0)
     width_z, link_z = axial_metric(z)
     weight_x = width_x if weight_x is None else weight_x
@@ -241,7 +243,7 @@ def axial_vertices(n_z: int, half_length: float, stretch: float) -> tuple[np.nda
 
 
 def exact_weights(z: np.ndarray, weight: np.ndarray, power: int, step: int = 2) -> np.ndarray:
-    """Weights in [-1, 1] corrected to integrate powers of z up to this one, even ones, or all with a ``step`` of 1."""
+    """Correct integration weights on [-1, 1] to be exact for even powers of z up to ``power``; ``step`` 1: for all."""
     powers = range(0, power + 1, step)
     moments = np.array([z**k for k in powers])
     missing = np.array([(1.0 + (-1.0) ** k) / (k + 1) for k in powers]) - moments @ weight
@@ -249,9 +251,9 @@ def exact_weights(z: np.ndarray, weight: np.ndarray, power: int, step: int = 2) 
 
 
 def rows_between(edges: Sequence[float], counts: Sequence[int], stretch: float) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices with one on every edge, ascending, ``counts`` intervals in the parts between them, and their weights.
+    """Return ascending vertices, one on every edge and ``counts`` intervals between two edges, and their weights.
 
-    Every part is integrated as by `axial_vertices` on its own, so that pressures may have kinks at the edges.
+    Every part is integrated by its own `axial_vertices`, so that pressures may have kinks at the edges.
     """
     z, weight = np.empty(sum(counts) + 1), np.zeros(sum(counts) + 1)
     first = 0
@@ -342,7 +344,7 @@ def long_bearing_grid(
 ) -> FilmGrid:
     """Film grid of uncoupled slices at ``n_z`` Gauss-Legendre points; other parameters as for `bearing_grid`.
 
-    The loads of a tilted journal are then integrated exactly for slices that change polynomially with z.
+    Loads of a tilted journal are integrated exactly if those of the slices are polynomials of z.
     """
     step = 2.0 * math.pi / n_theta
     theta = start_angle + step * np.arange(n_theta)
@@ -379,8 +381,8 @@ def slider_grid(
     """Grid of a plane slider's film, for `solve_film`: x in [0, length], z in [-width/2, width/2].
 
     Its vertices are at ``grid.x`` and ``grid.z`` times ``grid.reference_length``, m. The columns are the centres of n_x
-    cells, between two end columns of zero width for the pressures at x = 0 and x = length, so that a gap may jump at
-    the faces between cells: the grid has (n_x + 2) x (n_z + 1) vertices.
+    cells and two end columns of zero width, for the pressures at x = 0 and x = length. A gap may jump at the faces
+    between cells. The grid has (n_x + 2) x (n_z + 1) vertices.
 
     Parameters
     ----------

@@ -4,17 +4,18 @@ Scaled integrals, W = integration weights of (theta, z/R), P = p c^2 / (12 mu R^
 
     S_c = sum P W cos,  S_s = sum P W sin,  S_zc = sum P W z cos,  S_zs = sum P W z sin,  C = sum W share / H
 
-With one normal e_r, fixed in the housing, and one point per vertex, the pressure on the journal gives
+The normal e_r is fixed in the housing, and the pressure acts at the same point on both surfaces. On the journal it
+gives
 
     F = -(12 mu R^4 / c^2) (S_c, S_s),   M = (12 mu R^5 / c^2) (S_zs, -S_zc).
 
-Shear: on the bush acts ``tau = mu U/h - (h/2) dp/dx``, on the journal, at the same point, its opposite. The Poiseuille
-part, summed by parts, is ``sum (h/2) dp/dx = -(1/2) sum p dh/dx`` (+ the ends' part in z). It splits e x F between the
-two surfaces: the torque on the journal about its own axis carries +, that on the bush about its own carries - of half
-of it.
+Shear: the stress on the bush is ``tau = mu U/h - (h/2) dp/dx``, that on the journal, at the same point, its opposite.
+The Poiseuille part, summed by parts, is ``sum (h/2) dp/dx = -(1/2) sum p dh/dx`` (+ the ends' part in z). It is half of
+e x F. This half is added to the torque on the journal about the journal's axis, and subtracted from that on the bush
+about the bush's axis.
 
-Derivatives of the wrench to the motion of a rigid journal and to an elastic bore. Largest pressure of a film, between
-its vertices too.
+The module also has the derivatives of the wrench to the motion of a rigid journal. The largest pressure of a film may
+lie between its vertices.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from exudyn_ehd.film.kernels import FAST
 
 @njit(cache=True, fastmath=FAST)
 def pressure_integrals(P, weight, shapes, out):
-    """S_c, S_s, S_zc, S_zs -> out (4,); ``shapes``: `FilmGrid.gap_shapes`."""
+    """Set S_c, S_s, S_zc, S_zs in out (4,); ``shapes``: `FilmGrid.gap_shapes`."""
     by_pose, p, w = shapes[0].reshape(-1, 4), P.reshape(-1), weight.reshape(-1)
     x = y = bx = by = 0.0
     for c in range(p.size):
@@ -43,7 +44,8 @@ def pressure_integrals(P, weight, shapes, out):
 
 @njit(cache=True, inline="always")
 def ends_cavity(active, fixed, i, end):
-    """Return whether the end vertex (i, end) lies beside a cavity, whose fill its half control volume then has."""
+    """Return whether the end vertex (i, end) lies beside a cavity; its half control volume then has the cavity's
+    fill."""
     last = active.shape[1] - 1
     beside = 1 if end == 0 else last - 1
     return last > 1 and fixed[i, end] and not (active[i, beside] or fixed[i, beside])
@@ -52,7 +54,7 @@ def ends_cavity(active, fixed, i, end):
 # A flat loop without checks for a division by zero, which the compiler vectorises.
 @njit(cache=True, fastmath=FAST, error_model="numpy")
 def couette_integral(H, weight, active, fixed, cavity_share):
-    """C of an oil of one viscosity, with ``cavity_share`` where the film is broken."""
+    """Return C for constant viscosity; ``cavity_share``: shear of the ruptured film over that of a full one."""
     h, w, free, known = H.reshape(-1), weight.reshape(-1), active.reshape(-1), fixed.reshape(-1)
     cavity = unbroken = 0.0
     for c in range(h.size):
@@ -69,9 +71,9 @@ def couette_integral(H, weight, active, fixed, cavity_share):
 
 @njit(cache=True, inline="always")
 def end_forces(H, width, pressures):
-    """Integral over both ends of the gap times the pressures (lower, upper) there, the upper end's less the lower's.
+    """Return the integral of gap times pressure over the upper end less that over the lower end.
 
-    ``width`` (n,): of the control volumes.
+    ``width`` (n,): widths of the control volumes; ``pressures``: (lower, upper).
     """
     lower, upper = pressures[0], pressures[1]
     if lower == 0.0 and upper == 0.0:
@@ -86,11 +88,12 @@ def end_forces(H, width, pressures):
 
 @njit(cache=True)
 def integral_weights(pose, scales, speeds, out):
-    """Weights (6, 8) of (S_c, S_s, S_zc, S_zs, C, slopes in theta and z, ends' force) in the wrench on the journal.
+    """Set weights (6, 8) of (S_c, S_s, S_zc, S_zs, C, additions to the integrals of p dh/ds in theta and z, end force)
+    in the wrench on the journal.
 
-    On the bore, what gap terms and uneven drag add to the integrals over the slopes acts twice: by half of p dh/ds as
-    in every shear, and by -p dh/ds of the pressure on their slope. Uneven drag pulls the journal by as much as it holds
-    the bore back. ``pose`` (4,): scaled; ``scales``: of force and shear, and R; ``speeds``: spin and axial speed.
+    Gap terms and uneven drag add to the integrals over the slopes. On the bore this addition acts twice: by half of
+    p dh/ds as in every shear, and by -p dh/ds, the pressure on the slope of the gap term. Uneven drag acts on journal
+    and bore with opposite forces. ``pose`` (4,): scaled; ``scales``: (force, shear, R); ``speeds``: spin, axial speed.
     """
     (force, shear, R), (omega, w) = scales, speeds
     x, y, bx, by = pose[0], pose[1], pose[2], pose[3]
@@ -105,10 +108,11 @@ def integral_weights(pose, scales, speeds, out):
 
 @njit(cache=True)
 def journal_wrench(pose, integrals, couette, extra_theta, extra_z, H, width, ends, scales, speeds, out):
-    """Wrench on the journal -> out (>= 6,), SI; returns the scaled integral of the pressure flow's shear along theta.
+    """Set the wrench on the journal in out (>= 6,), SI; returns the scaled integral of the pressure flow's shear along
+    theta.
 
-    ``extra_theta`` and ``extra_z``: what gap terms and uneven drag add to those integrals; the edges of an arc take off
-    the first what their pressure does on the gap there, as grooves press on their walls in the bore. H, ``width``,
+    ``extra_theta``, ``extra_z``: additions of gap terms and uneven drag to those integrals. At the edges of an arc, the
+    edge pressure times the gap is subtracted from the first, as grooves press on their walls in the bore. H, ``width``,
     ``ends``: for `end_forces`; ``scales``, ``speeds``: as for `integral_weights`.
     """
     w, pressed = np.empty((6, 8)), end_forces(H, width, ends)
@@ -124,7 +128,7 @@ def journal_wrench(pose, integrals, couette, extra_theta, extra_z, H, width, end
 # A flat loop as in `couette_integral`.
 @njit(cache=True, fastmath=FAST, error_model="numpy")
 def couette_gradient(H, weight, active, fixed, cavity_share, out):
-    """dC/dH -> out (n, m)."""
+    """Set dC/dH in out (n, m)."""
     h, w, free, known, by = H.reshape(-1), weight.reshape(-1), active.reshape(-1), fixed.reshape(-1), out.reshape(-1)
     for c in range(h.size):
         by[c] = -w[c] / (h[c] * h[c]) * (1.0 if free[c] | known[c] else cavity_share)
@@ -137,7 +141,7 @@ def couette_gradient(H, weight, active, fixed, cavity_share, out):
 
 @njit(cache=True, fastmath=FAST)
 def load_adjoint_rhs(order, count, weight, shapes, active, rhs_out):
-    """Weights of S_c, S_s, S_zc, S_zs at the unknowns: rhs_out (4, count); zero where the pressure is clipped.
+    """Set rhs_out (4, count): weights of the unknowns in S_c, S_s, S_zc, S_zs, zero where the pressure is clipped.
 
     ``shapes``: `FilmGrid.gap_shapes`.
     """
@@ -161,11 +165,11 @@ def end_flows(
 ) -> tuple[float, float]:
     """Scaled volume flow that leaves through z = -L/2 and z = +L/2.
 
-    The end's half control volume takes q + B: q through the link to the next vertex, B for the divergence of what the
-    turn carries and for the squeeze. That is so where the film next to the end is ``full`` (n, m): unbroken, or fed by
-    a supply area. Next to a cavity an end with more than its pressure has a film up to a line closer than the next
-    vertex: as far as its parabola of pressure falls. For q < B it takes ``2 sqrt(q B)``, which joins q + B with its
-    slope at q = B, where the line reaches the next vertex.
+    The flow from an end into its half control volume is q + B: q is the pressure flow to the next vertex, B the
+    divergence of the Couette flow in theta plus the squeeze. This holds where the film next to the end is ``full``
+    (n, m): unbroken, or fed by a supply area. Next to a cavity, a film begins at an end with a pressure above the
+    cavity's. It ends where its pressure parabola does, before the next vertex. For q < B its flow is
+    ``2 sqrt(q B)``. At q = B, where the line reaches the next vertex, this is equal to q + B, with the same slope.
     """
     ends, beside, links, outward = [0, -1], [1, -2], [0, -2], np.array([-1.0, 1.0])
     q = kz[:, links] * (P[:, ends] - P[:, beside])
@@ -184,9 +188,10 @@ def refined_peak(
     """Peak of P (n, m) with its x and z, from parabolas through the largest vertex and its neighbours in x and in z.
 
     At a vertex whose pressure is prescribed (``fixed``, (n, m)), of a supply area or an end, the pressure has a kink:
-    there the peak is the vertex itself. Beside one, from which the pressure may fall steeply, a parabola overshoots;
-    there it may rise above the vertex by a quarter of the smaller drop to its neighbours. ``links`` (n,): 0 behind
-    the last column of an arc. Where columns are spaced unevenly, at the step of a dam, the pressure has a kink too.
+    the peak is then that of the vertex. Beside such a vertex, from which the pressure may fall steeply, a parabola
+    overshoots: its rise above the largest vertex is limited to a quarter of the smaller drop to the neighbours.
+    ``links`` (n,): 0 behind the last column of an arc. Where columns are spaced unevenly, at the step of a dam, the
+    pressure has a kink as well, and no parabola in x is used.
     """
     n, m = P.shape
     i, j = divmod(int(np.argmax(P)), m)
@@ -206,8 +211,8 @@ def refined_peak(
 
 
 def _crest(values: np.ndarray, fixed: np.ndarray, h0: float, h1: float) -> tuple[float, float]:
-    """Height above the middle one, and place from there, of the crest of a parabola through three points, of which some
-    are ``fixed``."""
+    """Return height and position, relative to the middle point, of the crest of a parabola through three points, some
+    of which may be ``fixed``."""
     before, value, after = values.tolist()
     d0, d1 = (value - before) / h0, (after - value) / h1
     second, slope = (d1 - d0) / (h0 + h1), (d0 * h1 + d1 * h0) / (h0 + h1)
@@ -219,7 +224,7 @@ def _crest(values: np.ndarray, fixed: np.ndarray, h0: float, h1: float) -> tuple
 
 @njit(cache=True)
 def wrench_gradient(changes, pose, integrals, couette, pose_scale, scales, speeds, out):
-    """d wrench / d motion (6, 10) in SI units from the gradients of the integrals.
+    """Set the tangent d wrench / d motion (6, 10), SI units, from the gradients of the integrals.
 
     Parameters
     ----------
@@ -238,7 +243,7 @@ def wrench_gradient(changes, pose, integrals, couette, pose_scale, scales, speed
             out[r, q] = 0.0
             for k in range(8):
                 out[r, q] += weights[r, k] * changes[k, q]
-    # the weights' own dependence on the pose
+    # derivatives of the weights to the pose
     out[2, 2] += axial * integrals[0]
     out[2, 3] += axial * integrals[1]
     out[5, 0] -= turning * integrals[1]

@@ -34,7 +34,7 @@ import numpy as np
 import exudyn_ehd as ehd
 from exudyn_ehd.film.lubricant.pressure_viscosity import LARGEST_PRESSURE
 from exudyn_ehd.film.reynolds.balance import film_balance
-from exudyn_ehd.film.reynolds.links import lacks
+from exudyn_ehd.film.reynolds.links import linear_residual
 from exudyn_ehd.joint.model.build import build_model
 
 RADIUS, CLEARANCE, VISCOSITY = 0.01, 2e-5, 0.04
@@ -223,7 +223,7 @@ def balance_error(model):
     if closure.conserves_mass:
         film_balance(y.pressure, y.fill, None, y.terms, out)
     else:
-        lacks((y.kx, y.kz, y.b), y.linear_pressure, out)
+        linear_residual((y.kx, y.kz, y.b), y.linear_pressure, out)
         out *= -1.0
     P, joins = y.linear_pressure, 0.0
     if s.complementary:

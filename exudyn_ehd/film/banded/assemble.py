@@ -12,27 +12,29 @@ from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.kernels import U0, U1, unsigned
 
 
-# slices alone, which Python does faster than the way into a compiled kernel takes
+# not compiled for calls from Python: the call of a compiled kernel would take longer than these slices
 @register_jitable
 def dense_band(buffer, count, width):
-    """The part of a contiguous buffer that holds a band, row after row."""
+    """Return the band (count, width + 1 + PAD) at the start of a contiguous buffer, as a view."""
     stride = width + 1 + PAD
     return buffer.reshape(-1)[: count * stride].reshape(count, stride)
 
 
 @njit(cache=True)
 def assemble(kx, kz, slopes, number, order, count, lower, upper):
-    """Bands of the numbered vertices from the derivatives of the links' flows and of the storage.
+    """Assemble the bands of the numbered vertices from the derivatives of the links' flows and of the storage.
 
-    Row by row with flat unsigned indices, which need no check of their sign.
+    Loops use flat unsigned indices, whose sign need not be checked.
 
     Parameters
     ----------
     kx, kz : (n, m) arrays
         Not zero where vertices are linked in theta and in z.
     slopes : (5, n m) array
-        Of the flow a -> b to the unknowns at a and at b, in theta, then in z;
-        of the storage to the vertex's own unknown.
+        Derivatives of the flow over the link a -> b to the unknowns at a and at b, in theta, then in z; derivative of
+        the storage to the unknown of the same vertex.
+    lower, upper : arrays
+        Bands, overwritten.
     """
     n, m = number.shape
     size, rows = unsigned(n * m), unsigned(m)
@@ -50,7 +52,7 @@ def assemble(kx, kz, slopes, number, order, count, lower, upper):
         c = unsigned(order[r])
         nxt = c + rows if c < last else c - last
         prv = c - rows if c >= rows else c + last
-        # links in theta, then in z, where those at the film's ends conduct nothing
+        # the derivatives of links in z beyond the film's ends are 0
         diagonal = store[c] + ax[c] - bx[prv] + az[c]
         b = places[nxt]
         if along[c] != 0.0 and b >= 0:
@@ -75,9 +77,9 @@ def assemble(kx, kz, slopes, number, order, count, lower, upper):
 
 @njit(cache=True)
 def add_tangents(along, kx, kz, full, slopes):
-    """Change the `slopes` of the links' own conductances to those of flows that are ``along`` (2, n, m) times as steep.
+    """Multiply the derivatives of the pressure flows in ``slopes`` by the factors ``along`` (2, n, m) of the links.
 
-    ``full``: vertices whose unknown is the pressure, None: all.
+    These are the ratios of tangent and secant conductance. ``full``: vertices whose unknown is the pressure, None: all.
     """
     n, m = kx.shape
     last = n * m - m
@@ -95,7 +97,10 @@ def add_tangents(along, kx, kz, full, slopes):
 
 @njit(cache=True)
 def _add_flow(value, place, ends, places, full, stride, low, up):
-    """Add to the balances of both ``ends`` of a link what its flow has by the unknown at a place; below 0: none."""
+    """Add the derivative ``value`` of a flow to the unknown at vertex ``place`` to the balances of its ``ends``.
+
+    Numbers of ``ends`` and of the unknown below 0: none.
+    """
     column = places[place]
     if column < 0 or not (full is None or full.reshape(-1)[place]):
         return
@@ -111,15 +116,15 @@ def _add_flow(value, place, ends, places, full, stride, low, up):
 
 @njit(cache=True)
 def add_corners(across, weights, kx, kz, full, number, lower, upper):
-    """Add the derivatives of the links' flows to the gradients across them: Newton's matrix couples corners as well.
+    """Add the derivatives of the links' flows through the pressure gradients across the links.
 
-    The flow over a link changes by ``-k across`` with the mean of the gradients across it at both ends, which are
-    ``back (P - P_before) + on (P_behind - P)``.
+    They couple diagonal neighbours. The flow over a link has the derivative ``-k across`` to the mean of the gradients
+    across the link at both ends. A gradient is ``back (P - P_before) + on (P_behind - P)``.
 
     Parameters
     ----------
     across : (2, n, m) array
-        Of the links in theta and in z.
+        Factors of the links in theta and in z.
     weights : four arrays
         ``back`` and ``on`` in theta (n,), and in z (m,).
     kx, kz : (n, m) arrays

@@ -2,16 +2,15 @@
 
 L D L^T of symmetric systems
 ----------------------------
-Storage: ``band[r, d] = A[r, r + d]`` with zeros behind the bandwidth, so that four pivots and vectors may read past it.
+Storage: ``band[r, d] = A[r, r + d]``, followed by zeros, so that four pivots and vectors may read beyond the bandwidth.
 Factor: ``A = U^T D^-1 U`` with ``U = D L^T`` stored in place of ``band`` and ``inv_diag = 1 / diag(U)``.
 
 Symbols: n columns (theta), m rows (z), w half-bandwidth, kx / kz conductances of the links (i, j)-(i+1, j) and
 (i, j)-(i, j+1).
 
-Four neighbouring numbers at once, written out as vectors.
-
-The rows of a film's bands are some ten numbers long: too short for the compiler's vector loops, and numba does not let
-it join single numbers into vectors. On processors without such vectors LLVM makes smaller ones of them.
+The kernels process vectors of four neighbouring numbers, in explicit LLVM instructions. The rows of a film's bands have
+about ten numbers, too few for the compiler's vector loops, and numba does not combine single numbers into vectors. On
+processors without vectors of this size LLVM splits them into smaller ones.
 
 L U without pivoting of the others
 ----------------------------------
@@ -40,19 +39,19 @@ _vector = ir.VectorType(ir.DoubleType(), LANES)
 
 
 def _require_contiguous(*arrays: types.Array) -> None:
-    """Refuse arrays, when a kernel is compiled, whose neighbours do not lie side by side."""
+    """Raise `TypingError` for arrays that are not contiguous, when a kernel is compiled."""
     if any(array.layout != "C" for array in arrays):
         raise TypingError(f"vectors are read from and written to contiguous arrays, got {arrays}")
 
 
 def _place(context: BaseContext, builder: ir.IRBuilder, kind: types.Array, array: ir.Value, at: ir.Value) -> ir.Value:
-    """Pointer to the vector that begins at a flat index."""
+    """Return a pointer to the vector that begins at a flat index."""
     data = context.make_array(kind)(context, builder, array).data
     return builder.bitcast(builder.gep(data, [at]), _vector.as_pointer())
 
 
 def _subtract(count: int) -> Callable:
-    """Code that subtracts ``count`` vectors, each times its factor."""
+    """Return the generator of code that subtracts ``count`` vectors, each times its factor."""
 
     def generate(
         context: BaseContext, builder: ir.IRBuilder, signature: Signature, arguments: Sequence[ir.Value]
@@ -80,21 +79,21 @@ def _signature(target: types.Array, source: types.Array, count: int) -> Signatur
 
 @intrinsic
 def subtract_lanes(typingctx, target, at, source, p, f):
-    """target[at : at + 4] -= f source[p : p + 4], flat arrays and unsigned places."""
+    """Set target[at : at + 4] -= f source[p : p + 4], for flat arrays and unsigned indices."""
     return _signature(target, source, 1), _subtract(1)
 
 
 @intrinsic
 def subtract_four_lanes(typingctx, target, at, source, p0, p1, p2, p3, f0, f1, f2, f3):
-    """target[at : at + 4] -= f0 source[p0 : p0 + 4] + f1 source[p1 : p1 + 4] + ..., flat arrays, unsigned places."""
+    """Set target[at : at + 4] -= f0 source[p0 : p0 + 4] + f1 source[p1 : p1 + 4] + ..., as `subtract_lanes`."""
     return _signature(target, source, 4), _subtract(4)
 
 
 @njit(cache=True)
 def assemble_band(kx, kz, number, order, count, width, band_out):
-    """Fill the upper band of the active cells' matrix.
+    """Fill the upper band of the matrix of the active cells.
 
-    Nothing flows over the last row's links in z. Flat unsigned indices need no check of their sign.
+    The last row's links in z have no conductance. The sign of flat unsigned indices need not be checked.
     """
     n, m = number.shape
     along, across, places, flat = kx.reshape(-1), kz.reshape(-1), number.reshape(-1), band_out.reshape(-1)
@@ -116,7 +115,7 @@ def assemble_band(kx, kz, number, order, count, width, band_out):
 
 @njit(cache=True, fastmath=FUSED)
 def factor_band(band, count, width, inv_diag_out):
-    """Factor in place, four pivots at a time; returns False if a pivot is not positive."""
+    """Factor a symmetric band in place, four pivots at a time; returns False if a pivot is not positive."""
     flat, stride, w, size = band.reshape(-1), unsigned(band.shape[1]), unsigned(width), unsigned(count)
     for block in range((count + 3) // 4):
         k = U4 * unsigned(block)
@@ -138,7 +137,7 @@ def factor_band(band, count, width, inv_diag_out):
 
 @njit(cache=True, fastmath=FUSED)
 def _factor_four(flat, stride, k, rows, w, inv_diag_out):
-    """Up to four rows from k on among themselves."""
+    """Eliminate up to four rows from k on with each other; returns False if a pivot is not positive."""
     for q in range(rows):
         row = (k + q) * stride
         if not flat[row] > 0.0:
@@ -156,7 +155,7 @@ def _factor_four(flat, stride, k, rows, w, inv_diag_out):
 
 @njit(cache=True, fastmath=FUSED)
 def factor_lu(lower, upper, count, width, inv_diag_out):
-    """Factor in place, four pivots at a time; returns False if a pivot vanishes."""
+    """Factor both bands in place, four pivots at a time; returns False if a pivot vanishes."""
     low, up, stride = lower.reshape(-1), upper.reshape(-1), unsigned(upper.shape[1])
     w, size = unsigned(width), unsigned(count)
     for block in range((count + 3) // 4):
@@ -180,7 +179,7 @@ def factor_lu(lower, upper, count, width, inv_diag_out):
 
 @njit(cache=True, fastmath=FUSED)
 def _factor_lu_four(low, up, stride, k, rows, w, inv_diag_out):
-    """Up to four rows of U and columns of L from k on among themselves."""
+    """Eliminate up to four rows of U and columns of L from k on with each other; returns False if a pivot vanishes."""
     for q in range(rows):
         row = (k + q) * stride
         if not abs(up[row]) > 1e-300:

@@ -4,10 +4,10 @@ The matrix of the finite-volume Reynolds equation couples a cell with its two ne
 in z. Active cells are numbered column by column (z fastest), so that the half-bandwidth is at most the number of
 unknown rows. The ring of columns is cut
 
-* at a column without active cells, or one without a link to the next, or else
+* behind a column without active cells, or without a link to the next one; else
 * nowhere: the ring is folded (columns 0, n-1, 1, n-2, ...), which doubles the bandwidth.
 
-The numbering depends on the active set alone and not on how it was found.
+The numbering depends on active set and links alone, not on earlier solutions.
 """
 
 from numba import njit
@@ -15,7 +15,7 @@ from numba import njit
 
 @njit(cache=True)
 def number_cells(active, kx, order_out, number_out):
-    """Number the active cells, all their links in the band; returns (count, half-bandwidth).
+    """Number the active cells; returns (count, half-bandwidth of all their links).
 
     Parameters
     ----------

@@ -1,21 +1,21 @@
 """Forward and back substitution with a stored band factor: a few right-hand sides as rows, or dozens as columns.
 
-``A = F^T G`` with F's rows in ``forward`` and G's in ``backward``, stored as in `factors`. One of the two
-triangles, or both, come with the diagonal ``1 / inverse``, else with ones:
+``A = F^T G`` with the rows of F in ``forward`` and those of G in ``backward``, stored as in `factors`. F, G or both
+have the diagonal ``1 / inverse``; the other one has ones on its diagonal:
 
 * `solve_lu`: F^T = L with ones, G = U;
 * `solve_lu_transposed`: F^T = U^T, G = L^T with ones;
-* `solve_ldl`: ``A = U^T D^-1 U``, both U, so that the back substitution starts from D times what came forward.
+* `solve_ldl`: ``A = U^T D^-1 U``, F = G = U; the back substitution starts from D times the result of the forward one.
 
-Four right-hand sides are carried along at once. All indices are flat and unsigned, which spares the slices and sign
-checks that would outweigh the arithmetic of short rows.
+Four right-hand sides are solved at once. All indices are flat and unsigned: slices and sign checks would take longer
+than the arithmetic of short rows.
 
 Dozens of right-hand sides, as columns of a matrix
 --------------------------------------------------
-A tile holds TILE of them; its rows are taken by fours, so that a step of a solve subtracts a 4 x 4 block of the factor
-times four known rows from four others, 16 products for 8 rows read and 4 written, in loops of constant length.
-Coefficients are packed by such blocks first. Faster than rows (`substitution`) from some ten right-hand sides on: the
-loads of an elastic bore need dozens, and full tiles are faster still.
+A tile holds TILE of them. Its rows are processed by fours: a step subtracts a 4 x 4 block of the factor times four
+known rows from four others. These are 16 products for 8 rows read and 4 written, in loops of constant length. The
+factor is packed into such blocks first. This is faster than right-hand sides as rows from about ten right-hand sides
+on. The loads of an elastic bore need dozens; full tiles are faster still.
 """
 
 from __future__ import annotations
@@ -61,7 +61,10 @@ def solve_lu_transposed(lower, upper, inverse, count, width, x):
 
 @njit(cache=True)
 def _solve_rows(forward, backward, scale_forth, scale_back, inverse, count, width, x):
-    """``scale_forth``, ``scale_back``: whether F and G have the diagonal ``1 / inverse``."""
+    """Solve for every row of x (k, count), in place.
+
+    ``scale_forth``, ``scale_back``: whether F and G have the diagonal ``1 / inverse``.
+    """
     col, row, stride, own = forward.reshape(-1), backward.reshape(-1), forward.shape[1], np.empty(count)
     fours = x.shape[0] // 4
     for k in range(fours):
@@ -78,7 +81,7 @@ def _solve_rows(forward, backward, scale_forth, scale_back, inverse, count, widt
 
 @njit(cache=True, fastmath=_FUSE)
 def _solve_one(col, row, stride, scale_forth, scale_back, inverse, count, width, x):
-    """One right-hand side x (count,) with the rows of F and G in flat arrays, ``stride`` apart."""
+    """Solve for one right-hand side x (count,), with the rows of F and G in flat arrays, ``stride`` apart."""
     step, size, w = unsigned(stride), unsigned(count), unsigned(width)
     along = step - U1
     for r in range(size):
@@ -148,7 +151,7 @@ TILE = 48
 
 @njit(cache=True)
 def pack_blocks(band, scale, scaled, count, width):
-    """Off-diagonal entries of a band, row r times ``scale[r]`` if ``scaled``, by 4 x 4 blocks.
+    """Pack the off-diagonal entries of a band into 4 x 4 blocks, row r times ``scale[r]`` if ``scaled``.
 
     Returns
     -------
@@ -166,7 +169,8 @@ def pack_blocks(band, scale, scaled, count, width):
 
 @njit(cache=True, fastmath=FAST)
 def _subtract(c, row, column, known, x):
-    """x -= C y for four rows of a tile each; entry (i, j) of C is ``c[i * row + j * column]``."""
+    """Set x -= C y for four rows x and four rows y (``known``) of a tile; entry (i, j) of C is
+    ``c[i * row + j * column]``."""
     c00, c01, c02, c03 = c[0], c[column], c[2 * column], c[3 * column]
     c10, c11, c12, c13 = c[row], c[row + column], c[row + 2 * column], c[row + 3 * column]
     c20, c21, c22, c23 = c[2 * row], c[2 * row + column], c[2 * row + 2 * column], c[2 * row + 3 * column]
@@ -181,9 +185,9 @@ def _subtract(c, row, column, known, x):
 
 @njit(cache=True, fastmath=FAST)
 def _solve_tile(forward, backward, diagonal, rows):
-    """Solve ``forward^T diagonal backward`` times unknowns = rows, one tile (blocks, 4 TILE), in place.
+    """Solve ``forward^T D backward x = rows`` for one tile (blocks, 4 TILE), in place.
 
-    ``diagonal`` (4 blocks,) is inverted already; the factors of unit diagonal are packed by `pack_blocks`.
+    ``diagonal`` (4 blocks,): 1 / D; ``forward``, ``backward``: factors of unit diagonal, packed by `pack_blocks`.
     """
     blocks, reach = len(rows), forward.shape[1] - 1
     for k in range(blocks):
@@ -264,7 +268,7 @@ def product(matrix: np.ndarray | csr_matrix, columns: np.ndarray) -> np.ndarray:
 
 @njit(cache=True, fastmath=FAST)
 def _sparse_product(indptr, indices, data, columns, out):
-    """`product` with the rows of a sparse matrix, by tiles that the processor's cache holds."""
+    """Set `product` in ``out`` from the rows of a sparse matrix, in tiles that fit into the processor's cache."""
     sides = columns.shape[1]
     for start in range(0, sides, TILE):
         end = min(start + TILE, sides)

@@ -1,4 +1,4 @@
-"""Every buffer of a film, allocated once; knows no solver."""
+"""Buffers of a film, allocated once; independent of the solvers."""
 
 from __future__ import annotations
 
@@ -6,25 +6,27 @@ from functools import cached_property
 
 import numpy as np
 
-# Zeros behind the half-bandwidth of every band: four pivots, and vectors of four, may read past it.
+# Number of zeros after the half-bandwidth in every row of a band, for kernels that process four pivots and vectors of
+# four numbers. Smaller numbers let them read the next row, larger ones cost time.
 PAD = 6
 
 
 class Workspace:
-    """Buffers of one film on n columns and m rows; a workspace serves one film at a time.
+    """Buffers of one film on n columns and m rows, for one solution at a time.
 
     Attributes
     ----------
     active : (n, m) bool array
-        The active set of the last solution.
+        Active set of the last solution.
     warm : bool
-        Whether the next solution starts from the last one.
+        Whether the next solution is a warm start from the last one.
     ready, exact : bool
-        Whether the factor serves for the next solution's first step, and whether it is that of the last solution.
+        Whether the factor may be used for a chord step as first step of the next solution, and whether it is that of
+        the last solution.
     u : (n, m) array
         Unknowns of the last solution, see `exudyn_ehd.film.cavitation.states`.
     slopes : (5, n m) array
-        Derivatives of the flows over the links (4) and of the storage to the unknowns.
+        Derivatives to the unknowns: of the flows over the links (4), and of the storage.
     """
 
     def __init__(self, n: int, m: int) -> None:
@@ -46,7 +48,7 @@ class Workspace:
         return self.warm and self.ready, self.count, self.width
 
     def take_end(self, found: bool, exact: bool, steps: int, count: int, width: int) -> tuple[bool, int]:
-        """Take over the factor that a solution leaves; returns (found, steps)."""
+        """Store the state of the factor after a solution; returns (found, steps)."""
         self.ready, self.exact, self.count, self.width = found, exact, count, width
         return found, steps
 
@@ -87,11 +89,11 @@ class Workspace:
 
     @cached_property
     def before(self) -> tuple[np.ndarray, ...]:
-        """Last one of ``places`` of `exudyn_ehd.film.solvers.newton` where gaps follow the pressure."""
+        """Last entry of ``places`` of `exudyn_ehd.film.solvers.newton`, where gaps follow the pressure."""
         u, above = np.zeros((2, *self.shape))
         return u, np.zeros(self.shape, dtype=np.bool_), above
 
     @cached_property
     def residual(self) -> np.ndarray:
-        """Mass balances of the vertices."""
+        """Residuals of the vertices' mass balances."""
         return np.zeros(self.shape)

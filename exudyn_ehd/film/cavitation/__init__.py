@@ -2,10 +2,10 @@
 
 Module map
 ----------
-closures          what a closure offers; the four closures
-system            one film problem as arrays; steady films that are not determined
-linear_film       the linear film on given vertices; Gümbel's condition; the rupture line of short bearings
-rupture_line      where the film's edge lies inside a cell, and what it adds to balances and derivatives
-states            one unknown per vertex for Newton's method, with pressure and fill
-oil_line          the film's edge inside a cell
+closures          interface of a closure; the four closures
+system            one film problem as arrays; steady films without a unique solution
+linear_film       linear film on given vertices; Gümbel's condition; rupture line of short bearings
+rupture_line      rupture line inside a cell without mass conservation: its terms in balances and derivatives
+states            one unknown per vertex for Newton's method, from which pressure and fill follow
+oil_line          rupture line inside a cell of a mass-conserving film
 """

@@ -1,14 +1,15 @@
-"""Cavitation closures: what the film does where the linear Reynolds equation would go below the cavity pressure.
+"""Cavitation closures: models of the film where the linear Reynolds equation gives less than the cavity pressure.
 
-Each closure is a small frozen object, which a scene names: what a film needs of it is `Closure`. All pressures
-here are scaled (see `exudyn_ehd.film.reynolds.links`); ``cavity_pressure`` of the specs is a gauge pressure in Pa.
+Each closure is a small frozen object, an option of a bearing; `Closure` is the interface that film solvers use. All
+pressures here are scaled (see `exudyn_ehd.film.reynolds.links`), except the option ``cavity_pressure``, a gauge
+pressure in Pa.
 
-* `FullSommerfeld`: nothing; negative pressures stay.
+* `FullSommerfeld`: no cavitation; negative pressures stay.
 * `Gumbel` (half Sommerfeld): the linear problem is solved, then pressures below the cavity pressure are cut off.
 * `SwiftStieber` (Reynolds condition): the complementarity problem ``P >= Pc, A P - b >= 0, (P - Pc)(A P - b) = 0``,
-  which `exudyn_ehd.film.solvers.newton` solves. Vertices with neither pressure nor source (a film at rest)
-  count as active, so that a film at rest has the tangent of the whole film: the sum of what a motion and its opposite
-  meet (a concentric journal meets half of it).
+  which `exudyn_ehd.film.solvers.newton` solves. Vertices with neither pressure nor source (a film at rest) count as
+  active. So a film at rest has the tangent of the full film, which is the sum of those for a motion and its opposite:
+  a concentric journal that starts to move feels half of it.
 
 `ElrodAdams` is mass-conserving cavitation (Jakobsson-Floberg-Olsson condition in the form of Elrod and Adams).
 
@@ -17,11 +18,12 @@ Its balance is
 
     sum over links of [k (P - P_neighbour) + f carried_upstream] + area (fill H - kept) / dt = 0,
 
-with the Poiseuille conductance k, the Couette flux f of a full film (gap on the link), the fill carried from upstream,
-which in a step is averaged over it (`exudyn_ehd.film.reynolds.links`), and ``kept`` by the film's history,
-`exudyn_ehd.film.solvers.solver.FilmSolver.keep`. Without a history the film is steady and the last term is
-``area fill dH/dt``. For given sets the system is linear; `exudyn_ehd.film.solvers.newton` finds them with it. Should
-it not, the film is approached through growing pseudo time steps, whose storage makes the matrices dominant enough.
+with the Poiseuille conductance k, the Couette flux f of a full film (gap on the link), and the fill carried from
+upstream, which is averaged over the step (`exudyn_ehd.film.reynolds.links`). ``kept`` is the oil content at the start
+of the step, from `exudyn_ehd.film.solvers.solver.FilmSolver.keep`. Without a history the film is steady and the last
+term is ``area fill dH/dt``. For a given active set the system is linear; `exudyn_ehd.film.solvers.newton` finds set and
+solution. If it fails, pseudo-transient continuation follows: the storage of growing pseudo time steps makes the
+matrices more dominant.
 
 Sources: H. G. Elrod, J. Lubrication Technology 103 (1981) 350; the one-unknown form after F. M. Alakhramsing, R. van
 Ostayen, R. Eling, Lubricants 3 (2015) 256, and T. Woloszynski, P. Podsiadlo, G. W. Stachowiak, Tribology Letters 58
@@ -37,7 +39,7 @@ import numpy as np
 
 from exudyn_ehd.status import PlausibilityWarning, require_bool, require_number, warn_user
 
-# Gauge pressure of the absolute vacuum, Pa, where the air presses most.
+# Lowest gauge pressure of the absolute vacuum, Pa, at the highest air pressure. Lower cavity pressures cause a warning.
 VACUUM = -1.1e5
 Placed = TypeVar("Placed", bound="Closure")
 
@@ -46,19 +48,19 @@ Placed = TypeVar("Placed", bound="Closure")
 class Closure(Protocol):
     """Properties of a cavitation model that a film solver needs; its films are found by `exudyn_ehd.film.solvers.sets`.
 
-    Derive a frozen dataclass from it, and set what differs.
+    For a model of your own, derive a frozen dataclass from it, and set the attributes that differ.
 
     Attributes
     ----------
     cavity_pressure : float
-        Gauge pressure at which the film ruptures and that its cavities have, Pa; -inf: it does not rupture.
+        Gauge pressure at which the film ruptures and which its cavities have, Pa; -inf: the film does not rupture.
     cavity_shear : float
-        Share of the full film's Couette shear that the ruptured part transmits.
+        Couette shear in the ruptured part of the film over that of a full film.
     conserves_mass : bool
-        True: cavities hold oil, the film fraction. It decides before ``clips``.
+        True: the oil in cavities is counted, by a film fraction; ``clips`` then has no effect.
     clips : bool
-        True: a linear film of which pressures below the cavity's are cut off. False: pressures at least the cavity's,
-        no oil from cavities, and one of both at every vertex (complementarity).
+        True: the linear film is solved, and pressures below the cavity pressure are cut off. False: complementarity
+        problem, with pressures of at least the cavity pressure.
     line_in_cells : bool or None
         Whether the rupture line lies inside the cells of the grid; None: where the bearing's other options allow it.
     """
@@ -96,8 +98,7 @@ class Gumbel(Closure):
     ratio 0.8 the load is 15 % (L/D 1), 12 % (0.5) or 6 % (0.25) below that of `SwiftStieber`.
 
     Where an end or a supply area has more than the cavity pressure, do not use ``leakage`` and ``supply_flow``; take
-    `SwiftStieber`. They are those of the linear film, whose tension beside the cavity sucks in oil that the cut then
-    loses.
+    `SwiftStieber`. Both are flows of the linear film, whose tension beside the cavity draws in oil that is then lost.
 
     Parameters
     ----------
@@ -137,7 +138,7 @@ class SwiftStieber(Closure):
 
     With the rupture line inside the cells of the grid the error of stiffness and damping is at most 1.5 % in any
     direction (default grid, eccentricity ratio up to 0.9, L/D 0.25 to 2). On vertices it is up to 13 %, in two thirds
-    of the time. Loads differ by 0.2 %. Errors of a `ShortBearing` are told there.
+    of the time. Loads differ by 0.2 %. For errors of a `ShortBearing` see there.
 
     With an `ElasticLiner` or a density law, a rupture line inside the cells takes 1.4 times (liner) or 1.7 times
     (density law) the time of one on vertices (`exudyn_ehd.film.solvers.liner.line`). It does not lower the errors where
@@ -172,7 +173,7 @@ class SwiftStieber(Closure):
 
 
 def check_cavity_pressure(name: str, pressure: float) -> None:
-    """Refuse what is no pressure; warn of one below the absolute vacuum, which no gas in a cavity has."""
+    """Raise `InputError` unless ``pressure`` is a number; warn of one below the absolute vacuum."""
     where = f"{name}.cavity_pressure"
     if require_number(where, pressure, "Pa") < VACUUM:
         warn_user(
@@ -183,7 +184,7 @@ def check_cavity_pressure(name: str, pressure: float) -> None:
 
 
 def place_line(closure: Placed, in_cells: bool) -> Placed:
-    """A closure whose rupture line has a place: ``in_cells`` where it leaves that open."""
+    """Return the closure with ``line_in_cells`` set to ``in_cells`` if it is None."""
     open_line = closure.line_in_cells is None
     return replace(closure, line_in_cells=in_cells) if open_line else closure  # type: ignore[type-var]
 
@@ -206,14 +207,14 @@ class ElrodAdams(Closure):
     It needs a supply of oil: end or supply pressures above the cavity pressure. Without one, `steady` raises an error;
     in a joint the film runs dry within some turns, and a warning says so.
 
-    From step to step it remembers the void, the part of the gap without oil. Oil flows balance to round-off. The oil
-    content follows from them but for half of a step's change of the gap, a difference that does not add up over steps.
+    The state of the film is the void, the part of the gap without oil. Oil flows balance to round-off. The oil content
+    differs from their sum by at most half of a step's change of the gap, which does not accumulate over steps.
 
     With ``line_in_cells=True`` (default grid, eccentricity ratio 0.6 to 0.9, L/D 0.5 and 1) the error of steady
     stiffness falls from 9 to 1.5 %, in two to three times the time. The spread of damping over the direction of the
-    load falls from 8 to 1 % with a cavity pressure of -10 bar. The line where the film reforms stays on vertices, and
-    matters more the nearer the cavity's pressure is to that of the ends: at -1 bar the spread of damping falls from 49
-    to 23 %, and that of stiffness from 9 to 4 %; on 192 x 20 vertices that of damping falls from 3 to 2 %.
+    load falls from 8 to 1 % with a cavity pressure of -10 bar. The reformation line stays on vertices. Its effect is
+    the larger the nearer the cavity pressure is to that of the ends: at -1 bar the spread of damping falls from 49 to
+    23 %, and that of stiffness from 9 to 4 %; on 192 x 20 vertices that of damping falls from 3 to 2 %.
 
     Parameters
     ----------

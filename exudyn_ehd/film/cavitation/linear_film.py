@@ -1,20 +1,21 @@
-"""Linear film on given vertices, and pressures that count in loads up to a rupture line inside the cells.
+"""Linear film on given vertices, and mean pressures up to a rupture line inside the cells, for loads.
 
-Gümbel's condition cuts the linear film of all vertices off. A film of Swift and Stieber without pressure flow in theta
-(short bearing) ruptures between its columns: every column is a film of its own in z, whose pressure in theta follows
-its source, linearly through the rupture line. So its pressures p go on into a ruptured vertex of the next column as the
-negative one that the lack of oil there would make,
+Gümbel's condition clips the linear film of all vertices at the cavity pressure. A film of Swift and Stieber without
+pressure flow in theta (short bearing) consists of columns that are independent of each other. The pressure of a column
+is proportional to its source, which changes sign between a full and a ruptured column. So the pressures p are
+continued into a ruptured vertex of the next column by the negative pressure that its negative source would cause,
 
-    u = -r / D,    D = k dz_below dz_above / (z_below z_above),
+    u = -r / D,    D = k dz_below dz_above / (z_below z_above).
 
-with the vertex's multiplier ``r = A p - b >= 0``, the sum k of its two conductances in z, the lengths of these links,
-and its distances to both ends. D is the stiffness of a column with the same lack of oil per area everywhere, whose
-pressure is a parabola over z. `mean_in_cells` counts pressures up to where p and u meet the cavity's, as it does with
-the linear film of Gümbel's condition, which is the same for an aligned journal. u is zero where a vertex joins the
-film, so that forces are continuous in the motion of a tilted journal too.
+Here ``r = A p - b >= 0`` is the multiplier of the vertex, and k the sum of its two conductances in z. dz_below and
+dz_above are the lengths of these links, z_below and z_above the distances to both ends. D is the stiffness of a column
+with a constant source per area, whose pressure is a parabola over z. `mean_in_cells` takes the zero of the straight
+line from p to u as rupture line. It does so with the linear film of Gümbel's condition as well, which gives the same
+result for an aligned journal. u is zero where a vertex becomes active, so that forces are continuous in the motion of a
+tilted journal too.
 
-For derivatives these u are unknowns behind the film's, with the balances ``D u + r = 0``. p and u are pressures above
-the cavity's.
+For derivatives these u are additional unknowns after those of the film, with the balances ``D u + r = 0``. p and u are
+pressures above the cavity's.
 
 Symbols: P pressure, pc cavity pressure, scaled.
 """
@@ -34,19 +35,22 @@ from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.reynolds.links import LinkFlux, lacks
+from exudyn_ehd.film.reynolds.links import LinkFlux, linear_residual
 
 
 @njit(cache=True, nogil=True)
 def solve_linear(links, active, matrix, x, P):
-    """Pressures of the ``active`` vertices, from those of all others in P (n, m); returns (ok, count, width).
+    """Solve for the pressures P (n, m) of the ``active`` vertices, for given P of all others; returns (ok, number of
+    unknowns, half-bandwidth).
 
     Parameters
     ----------
     links : (kx, kz, b)
+        Conductances and right-hand side.
     active : (n, m) bool array
+        Vertices with unknowns.
     matrix : tuple of arrays
-        `exudyn_ehd.film.banded.workspace.Workspace.symmetric`.
+        Buffers `exudyn_ehd.film.banded.workspace.Workspace.symmetric`.
     x : (n m,) array
         Right-hand side and solution.
     """
@@ -56,11 +60,11 @@ def solve_linear(links, active, matrix, x, P):
     assemble_band(kx, kz, number, order, count, width, band)
     if not factor_band(band, count, width, inv_diag):
         return False, count, width
-    pressures, lack = P.reshape(-1), np.empty(P.shape)
+    pressures, residual = P.reshape(-1), np.empty(P.shape)
     for r in range(count):
         pressures[order[r]] = 0.0
-    lacks(links, P, lack)
-    rest = lack.reshape(-1)
+    linear_residual(links, P, residual)
+    rest = residual.reshape(-1)
     for r in range(count):
         x[r] = rest[order[r]]
     solve_ldl_one(band, inv_diag, count, width, x)
@@ -71,7 +75,7 @@ def solve_linear(links, active, matrix, x, P):
 
 @njit(cache=True)
 def clip_pressure(linear, fixed, pc, P_out, active_out):
-    """Gümbel: P = max(linear, pc) at free vertices; active marks where nothing was cut."""
+    """Apply Gümbel's condition: P = max(linear, pc) at free vertices; those that are not clipped become active."""
     n, m = linear.shape
     for i in range(n):
         for j in range(m):
@@ -80,8 +84,8 @@ def clip_pressure(linear, fixed, pc, P_out, active_out):
 
 
 @njit(cache=True, inline="always")
-def _beside(i, linked):
-    """Columns on either side, -1 where a ring is open."""
+def _neighbour_columns(i, linked):
+    """Return the columns before and behind column i, -1 where there is no link to it."""
     n = linked.size
     prv, nxt = (i - 1 if i > 0 else n - 1), (i + 1 if i + 1 < n else 0)
     return prv if linked[prv] else -1, nxt if linked[i] else -1
@@ -89,20 +93,21 @@ def _beside(i, linked):
 
 @njit(cache=True)
 def mean_in_cells(linear, fixed, linked, pc, active, P_out):
-    """P of an ``active`` vertex becomes the mean of what is left of the linear pressure inside the cells.
+    """Replace P of an ``active`` vertex next to the rupture line by the mean of the linear pressure up to the line.
 
-    Between a vertex at the pressure p above the cavity's and one below it, the film ends in theta after a share s of
-    the cell, ``s = p / (p - p_other)``: its integral there is ``p s / 2`` instead of p / 2. ``linked`` (n,): whether
-    columns have a link to the next one; ``linear``: of Gümbel's condition, or continued beyond the film.
+    Let p and p_other be the pressures of two vertices above and below the cavity pressure, relative to it. The film
+    ends in theta at the fraction ``s = p / (p - p_other)`` of the cell. Its integral over the cell is ``p s / 2``
+    instead of p / 2. ``linked`` (n,): whether columns have a link to the next one; ``linear``: linear film of Gümbel's
+    condition, or continued pressures.
     """
     n, m = linear.shape
     for i in range(n):
-        beside = _beside(i, linked)
+        neighbours = _neighbour_columns(i, linked)
         for j in range(m):
             u = pc - linear[i, j]
             if u <= 0.0 or fixed[i, j]:
                 continue
-            for other in beside:
+            for other in neighbours:
                 if other >= 0 and active[other, j]:
                     p = linear[other, j] - pc
                     P_out[other, j] -= 0.5 * p * u / (p + u)
@@ -110,15 +115,15 @@ def mean_in_cells(linear, fixed, linked, pc, active, P_out):
 
 @njit(cache=True)
 def _slopes_of_clip(linear, fixed, linked, pc, active, slopes_out):
-    """Derivatives (3, n, m) of P to the linear pressure at the vertex itself, before it and behind it.
+    """Set derivatives (3, n, m) of P after `mean_in_cells` to the linear pressure at the vertex, before it, behind it.
 
-    Of P as `mean_in_cells` leaves it, ``d(p s) = s (2 - s) dp + s^2 dp_other``; 0 at clipped vertices.
+    They are 0 at clipped vertices; at the line, ``d(p s) = s (2 - s) dp + s^2 dp_other``.
     """
     n, m = linear.shape
     slopes_out[0] = active
     slopes_out[1:] = 0.0
     for i in range(n):
-        prv, nxt = _beside(i, linked)
+        prv, nxt = _neighbour_columns(i, linked)
         for j in range(m):
             u = pc - linear[i, j]
             if u <= 0.0 or fixed[i, j]:
@@ -134,13 +139,13 @@ def _slopes_of_clip(linear, fixed, linked, pc, active, slopes_out):
 def rows_of_linear(linear, fixed, linked, pc, active, number, rows):
     """Convert weights (k, count) of P after `mean_in_cells` to weights of the linear pressure, in place.
 
-    The transpose of `pressures_by_linear`. Weights at clipped vertices are 0 before.
+    This is the transpose of `pressures_by_linear`. On entry, weights at clipped vertices are 0.
     """
     n, m = linear.shape
     slopes = np.empty((3, n, m))
     _slopes_of_clip(linear, fixed, linked, pc, active, slopes)
     for i in range(n):
-        prv, nxt = _beside(i, linked)
+        prv, nxt = _neighbour_columns(i, linked)
         for j in range(m):
             whole = slopes[0, i, j] == 1.0 and slopes[1, i, j] == 0.0 and slopes[2, i, j] == 0.0
             if whole or not active[i, j]:
@@ -158,7 +163,7 @@ def rows_of_linear(linear, fixed, linked, pc, active, number, rows):
 def pressures_by_linear(
     linear: np.ndarray, fixed: np.ndarray, linked: np.ndarray, pc: float, active: np.ndarray
 ) -> csr_matrix:
-    """Derivatives (n m, n m) of P as `mean_in_cells` leaves it to the linear pressure."""
+    """Derivatives (n m, n m) of P after `mean_in_cells` to the linear pressure."""
     slopes, at = np.empty((3, *active.shape)), np.arange(active.size).reshape(active.shape)
     _slopes_of_clip(linear, fixed, linked, pc, active, slopes)
     columns = np.stack((at, np.roll(at, 1, axis=0), np.roll(at, -1, axis=0)))
@@ -178,9 +183,9 @@ class ColumnLine(NamedTuple):
     linked : (n,) bool array
         Columns with a link to the next one.
     kz : (n, m) array
-        The system's.
+        Conductances in z.
     solved, continued : (n, m) arrays
-        Pressures that solve the film; the same, continued into ruptured vertices beside it.
+        Pressures that solve the film; the same, with u in the ruptured vertices beside the film.
     """
 
     stiffness: np.ndarray
@@ -190,17 +195,17 @@ class ColumnLine(NamedTuple):
     continued: np.ndarray
 
     def couple(self, work: Workspace, x: np.ndarray, transposed: bool) -> None:
-        """Couple rows (count, k) of p and u: with ``-dr/dp`` over D, from p to u or ``transposed``."""
+        """Add ``-dr/dp / D`` times the rows of p to the rows of u, in x (count, k); or the ``transposed`` product."""
         couple_columns(self, work.active, work.symmetric, work.count, x, transposed)
 
     def gradients(self, work: Workspace, pc: float, H: np.ndarray, flux: LinkFlux | None) -> Gradients:
-        """`Gradients` of ``D u`` at fixed u, of the last solution."""
+        """Derivatives of ``D u`` to the gaps at fixed u, for the last solution."""
         flow = None if flux is None else (flux.gz, flux.gz_h, flux.gz_v)
         return Gradients(*column_gradients(self, work.active, work.order, work.count, pc, H, flow))
 
 
 def column_line(grid: FilmGrid, kz: np.ndarray) -> ColumnLine:
-    """`ColumnLine` of a film with the conductances kz (n, m) in z."""
+    """Return the `ColumnLine` of a film with the conductances kz (n, m) in z."""
     z, links, stiffness = grid.z, np.diff(grid.z), np.zeros(grid.z.size)
     stiffness[1:-1] = links[:-1] * links[1:] / ((z[1:-1] - z[0]) * (z[-1] - z[1:-1]))
     return ColumnLine(stiffness, grid.link_x != 0.0, kz, np.zeros(grid.shape), np.zeros(grid.shape))
@@ -208,9 +213,9 @@ def column_line(grid: FilmGrid, kz: np.ndarray) -> ColumnLine:
 
 @njit(cache=True)
 def extend_film(line, b, sets, pc, matrix, size, P):
-    """Continue the pressures P (n, m) of a film; returns the number of all unknowns.
+    """Continue the pressures P (n, m) of a film by u; returns the number of all unknowns.
 
-    P becomes what counts in loads. Rows of the factor behind the film's hold D alone.
+    P becomes the mean pressures of `mean_in_cells`. The rows of the factor after those of the film hold D alone.
 
     Parameters
     ----------
@@ -225,7 +230,7 @@ def extend_film(line, b, sets, pc, matrix, size, P):
     band = dense_band(upper, n * m, width)
     solved[:] = u[:] = P
     for i in range(n):
-        prv, nxt = _beside(i, linked)
+        prv, nxt = _neighbour_columns(i, linked)
         for j in range(m):
             if fixed[i, j] or active[i, j] or not ((prv >= 0 and active[prv, j]) or (nxt >= 0 and active[nxt, j])):
                 continue
@@ -242,7 +247,7 @@ def extend_film(line, b, sets, pc, matrix, size, P):
 
 @njit(cache=True)
 def couple_columns(line, active, matrix, count, x, transposed):
-    """Add ``-dr/dp`` over D times the film's rows of x (count, k) to the others; ``transposed``: the reverse."""
+    """Add ``-dr/dp`` over D times the film's rows of x (count, k) to the rows of u; ``transposed``: from u to p."""
     (order, number, _, _, inv_diag, _, _), free = matrix, active.reshape(-1)
     numbers, flow = number.reshape(-1), line.kz.reshape(-1)
     for r in range(count):

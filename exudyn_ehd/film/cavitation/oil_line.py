@@ -1,33 +1,33 @@
 """Rupture line of a mass-conserving film inside a cell: pressure and fill of the last full vertex in front of it.
 
-At a vertex let ``f`` be the flow that wedge and squeeze take away, ``k`` the mean conductance of its two links in
-theta, and ``o`` the outflow by the Couette flows of a full film. The pressure in front of the line is the parabola of
-`exudyn_ehd.film.cavitation.rupture_line`: with the line s cells beyond the vertex, 0 < s < 1, its pressure above the
-cavity's is ``p = f s^2 / (2 k)``. At the line the pressure gradient vanishes, and the surfaces alone carry the oil.
-Integrated from there, the flow over the middle of the link is, wherever on the link the line lies,
+At a vertex let ``f`` be the flow that wedge and squeeze take away, and ``k`` the mean conductance of its two links in
+theta. ``o`` is the outflow by the Couette flows of a full film. The pressure in front of the line is the parabola of
+`exudyn_ehd.film.cavitation.rupture_line`. If the line lies s cells beyond the vertex, 0 < s < 1, the pressure of the
+vertex above the cavity's is ``p = f s^2 / (2 k)``. At the line the pressure gradient vanishes, and only the Couette
+flow carries oil. Integrated from there, the flow over the middle of the link is, for any line on the link,
 
     o + f (s - 1/2) = o + k p - N,    N = f (1 - s)^2 / 2.
 
 So the scheme's flow ``o + k p`` is too large by N: the last full vertex loses N too much, and the first vertex of the
-cavity gets it. A flow that is smaller by N carries the fill
+cavity receives it. To reduce the flow by N, its fill is set to
 
     fill = 1 - N / o = 1 - (f / (2 o)) (1 - s)^2,    s = sqrt(2 k p / f),
 
-instead of 1. The two branches of the plain film, a full fill and the cavity pressure, thus meet along this curve and
-not in a corner. Nothing is added to any balance, and mass is conserved to round-off. A vertex joins the film at s = 0,
-when its oil fills ``1 - f / (2 o)`` of its outflow, that is of the gap half a cell downstream. Both pressure and fill
-grow along the curve. So the matrices stay column diagonally dominant M-matrices, and there is one solution.
+instead of 1. The two branches of the film without such a line, fill 1 and cavity pressure, are thus connected by this
+curve instead of a corner. No balance has an additional term, and mass is conserved to round-off. A vertex becomes full
+at s = 0, when the fill of its outflow, that of the gap half a cell downstream, reaches ``1 - f / (2 o)``. Both pressure
+and fill grow along the curve. So the matrices stay column diagonally dominant M-matrices, and there is one solution.
 
-The fill of the vertex itself follows a curve of its own, ``1 - (f / (2 o)) (1 - s / FILLED)^2`` up to s = FILLED and 1
-beyond: the void in front of a line is of second order of the cell. With the curve of the flows, a motion that is over
-before the oil has moved by a cell would have to fill this void before it meets the film's pressure, as if the film
-ended at the vertex.
+The fill of the vertex is ``1 - (f / (2 o)) (1 - s / FILLED)^2`` up to s = FILLED, and 1 beyond. It differs from
+the fill of the outflow because the void in front of a line is of second order in the cell size. With the outflow's
+fill, a short motion, which displaces the oil by less than a cell, would first have to fill this void. Only then would
+the pressure respond, as if the film ended at the vertex.
 
-f is bounded by o: ``f / sqrt(1 + (f / o)^2)`` replaces it, a change of third order of the cell. So the line stays on
-the grid in a film that opens without being carried along. There is no line where the wedge builds pressure up (f <= 0),
-in films at rest, without pressure flow in theta, and next to columns with prescribed pressure. Where a film reforms in
-a gap that opens, the first full vertex is on the curve as well: it lacks at most half of the oil by which the gap opens
-over one cell.
+f is bounded by o: ``f / sqrt(1 + (f / o)^2)`` replaces it, a change of third order in the cell size. So in a gap that
+opens with little Couette flow the line lies on vertices. There is no line where the wedge builds pressure up
+(f <= 0), in films at rest, without pressure flow in theta, and next to columns with prescribed pressure. Where a film
+reforms in a gap that opens, the first full vertex is on the curve as well. Its missing oil is at most half of that by
+which the gap opens over one cell.
 """
 
 from __future__ import annotations
@@ -43,10 +43,11 @@ from exudyn_ehd.film.grid import Mesh
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import LinkFlux
 
-# s from which on a vertex is full.
+# s from which on the fill of a vertex is 1. Larger values delay the response of the pressure to short motions, smaller
+# ones make the fill steeper over s.
 FILLED = 0.25
-# Smallest f over o at which a vertex has a curve: less is round-off.
-ROUNDING = 1e-13
+# Smallest f / o at which a vertex has a curve. Smaller ratios are round-off; larger values omit weak curves.
+SMALLEST_RATIO = 1e-13
 
 
 class CurveFields(NamedTuple):
@@ -55,7 +56,7 @@ class CurveFields(NamedTuple):
     Attributes
     ----------
     f, k, out : arrays
-        Symbols of the module: bounded f, 0 where there is no line; k; o.
+        f of the module, bounded by o, 0 where there is no line; k; o.
     bend : array
         Derivative of the bounded f to f.
     whole, drop : arrays
@@ -63,8 +64,8 @@ class CurveFields(NamedTuple):
     s : array
         Distance of the line from the vertex in cells; 1 where there is none.
     slope, rise : arrays
-        Derivatives, to the pressure along the curve, of the fill that flows carry and of the vertex' own; 0 where there
-        is no line.
+        Derivatives to the pressure, along the curve, of the fill of the outflow and of the fill of the vertex; 0 where
+        there is no line.
     """
 
     f: np.ndarray
@@ -98,7 +99,7 @@ class OilLine:
     density : float
         Density in the cavity over that at ambient pressure.
     lift_by_speed : (m,) array
-        Derivative to vx of the conductance that a liner adds to k.
+        Derivative to vx of the conductance that an elastic liner adds to k.
     """
 
     def __init__(self, block: np.ndarray, shape: tuple[int, int]) -> None:
@@ -121,11 +122,11 @@ class OilLine:
         squeeze: bool,
         mesh: tuple[np.ndarray, ...],
     ) -> tuple[Gradients, Gradients]:
-        """Derivatives, at fixed pressure, of the fills that flows carry from the vertices at the line, and of the
-        vertices' fills.
+        """Derivatives to the motion, at fixed pressure, of two fills of every vertex at the line: fill of the outflow,
+        fill of the vertex.
 
-        They are of the last solution, to the film's ``gaps`` at vertices and links; ``rows`` are flat vertices, not
-        unknowns.
+        They hold for the last solution, with its ``gaps`` at vertices and links. ``rows`` of the results are flat
+        vertices, not unknowns.
         """
         places = np.flatnonzero(self.fields.s < 1.0)
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
@@ -143,8 +144,11 @@ class OilLine:
     def balance_gradients(
         self, fills: tuple[Gradients, Gradients], film: FilmTerms, store: np.ndarray, unknowns: np.ndarray
     ) -> Gradients:
-        """Derivatives of the balances of the ``unknowns`` (count,), flat vertices, through the fills of `gradients`:
-        one entry for every balance and vertex at the line. ``film`` and ``store``: of `FilmSolver.fill_weights`."""
+        """Derivatives of the balances through the fills of `gradients`: one entry for every balance and vertex at the
+        line.
+
+        ``film``, ``store``: results of `FilmSolver.fill_weights`; ``unknowns`` (count,): flat vertices of the balances.
+        """
         carried, full = fills
         rows, places = np.empty((2, 5 * full.places.size), dtype=np.int64)
         by = np.empty((len(full.by), 5 * full.places.size))
@@ -154,8 +158,10 @@ class OilLine:
 
 @njit(cache=True)
 def curve_terms(film, b, density, lift, curve):
-    """Set f, k, o and the fields that follow from them, for `FilmTerms` and the right-hand side b (n, m) of oil of this
-    density over that at ambient pressure; ``lift`` (m,): what a liner adds to k."""
+    """Set f, k, o and the fields that follow from them, from `FilmTerms` and the right-hand side b (n, m).
+
+    ``density``: that of the oil over that at ambient pressure; ``lift`` (m,): conductance that a liner adds to k.
+    """
     n, m = b.shape
     along, f_x, f_z = film.kx.reshape(-1), film.fx.reshape(-1), film.fz.reshape(-1)
     rest, known = b.reshape(-1), film.fixed.reshape(-1)
@@ -170,7 +176,7 @@ def curve_terms(film, b, density, lift, curve):
         curve.k[c] = 0.5 * (along[prv] + along[c]) + lift[c % m]
         curve.f[c] = curve.whole[c] = curve.drop[c] = curve.bend[c] = 0.0
         if (
-            -rest[c] > ROUNDING * out
+            -rest[c] > SMALLEST_RATIO * out
             and out > 0.0
             and min(along[prv], along[c]) > 0.0
             and not (known[c] | known[prv] | known[nxt])
@@ -184,8 +190,8 @@ def curve_terms(film, b, density, lift, curve):
 
 
 @njit(cache=True, inline="always")
-def lack(s, end):
-    """Return the missing fill over that at s = 0, and its derivative to s, for a curve that ends at s = ``end``."""
+def missing_fill(s, end):
+    """Return the missing fill over that at s = 0, ``(1 - s / end)^2``, and its derivative to s; 0 beyond ``end``."""
     if s >= end:
         return 0.0, 0.0
     left = 1.0 - s / end
@@ -194,15 +200,16 @@ def lack(s, end):
 
 @njit(cache=True)
 def _curve_weights(places, curve, end, out):
-    """Set derivatives (3, c) of ``1 - drop lack(s, end)`` at ``places`` (c,) to the right-hand side, k and o."""
+    """Set derivatives (3, c) of the fill ``1 - drop missing_fill(s, end)`` at ``places`` (c,) to the right-hand side,
+    k and o."""
     for q in range(places.size):
         c = places[q]
         s, f, o = curve.s[c], curve.f[c], curve.out[c]
-        left, by_s = lack(s, end)
+        left, by_s = missing_fill(s, end)
         by_f = (0.25 * by_s * s - 0.5 * left) / o
         out[0, q] = -by_f * curve.bend[c]
         out[1, q] = -0.25 * by_s * s * f / (curve.k[c] * o)
-        # f / o, of which the bounded f is f / sqrt(1 + (f / o)^2): its derivative to o is (f / o)^3 bend
+        # the bounded f has the derivative (f / o)^3 bend to o, with f before it is bounded
         share = f / o
         share = share / np.sqrt(max(1.0 - share * share, 1e-300))
         out[2, q] = 0.5 * left * f / (o * o) + by_f * share * share * share * curve.bend[c]
@@ -230,10 +237,10 @@ def _outflow_gradients(places, by_out, H, HF, slopes, vx, vz, mesh, by):
 
 @njit(cache=True)
 def add_curve(curve, terms, density, slopes):
-    """Add the derivatives through the fills at the line, which follow the pressure, to ``slopes`` (5, n m).
+    """Add the derivatives of flows and storage to the pressure through the fills at the line to ``slopes`` (5, n m).
 
-    ``density`` (n, m), None: 1; ``slopes``: of `exudyn_ehd.film.reynolds.balance.film_slopes`, where the line's
-    vertices are among the full ones.
+    ``density`` (n, m), None: 1; ``slopes``: those of `exudyn_ehd.film.reynolds.balance.film_slopes`, which counts the
+    vertices at the line as full.
     """
     m, size = terms.kx.shape[1], terms.kx.size
     along, across, area, grow = (

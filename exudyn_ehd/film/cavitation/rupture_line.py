@@ -1,24 +1,25 @@
-"""Swift-Stieber's rupture line inside a cell: the film's balance as it is where its edge lies between two vertices.
+"""Rupture line of Swift and Stieber inside a cell: mass balance of the last active vertex in front of the line.
 
-Where the film ends its pressure is a parabola, ``p = q d^2 / 2`` with the distance d to the line. Of a vertex let ``f``
-be what wedge and squeeze take away (minus the right-hand side of `exudyn_ehd.film.reynolds.links`) and ``k`` the mean
-conductance of its two links in theta, so that ``q = f / (k h^2)`` with the distance h of two columns. If the line lies
-s cells beyond a vertex, 0 < s < 1, then ``p = q h^2 s^2 / 2`` there. The parabola, continued beyond the line, meets
-the scheme's balance exactly; but the scheme has the cavity's pressure at the next vertex, not the parabola's value
-``q h^2 (1 - s)^2 / 2``. So the true film leaves in the balance of the last vertex
+Near the line the pressure is a parabola, ``p = q d^2 / 2`` with the distance d to the line. At a vertex let ``f`` be
+the flow that wedge and squeeze take away (minus the right-hand side of `exudyn_ehd.film.reynolds.links`), and ``k`` the
+mean conductance of its two links in theta. Then ``q = f / (k h^2)`` with the distance h of two columns. If the line
+lies s cells beyond a vertex, 0 < s < 1, its pressure is ``p = q h^2 s^2 / 2``. The parabola, continued beyond the line,
+satisfies the discrete balance exactly. But the scheme has the cavity pressure at the next vertex, not the value
+``q h^2 (1 - s)^2 / 2`` of the parabola. So the balance of the last vertex has for the true pressures the residual
 
-    N = f (1 - s)^2 / 2,    s = sqrt(2 k p / f),    for 0 < s < 1, else nothing,
+    N = f (1 - s)^2 / 2,    s = sqrt(2 k p / f),    for 0 < s < 1, else 0,
 
-and the film solves ``A P - b - N(P) = 0`` where it is not ruptured. A vertex joins at s = 0 when its own balance falls
+and the equation of the active set is ``A P - b - N(P) = 0``. A vertex becomes active, at s = 0, when ``A P - b`` falls
 below f / 2. The matrix stays symmetric, and an M-matrix, since
 
-    -dN/dp = k (1 - s) / s,    dN/df = (1 - s) / 2,    dN/dk = -f s (1 - s) / (2 k),
+    -dN/dp = k (1 - s) / s,    dN/df = (1 - s) / 2,    dN/dk = -f s (1 - s) / (2 k).
 
-the first of which makes the outer link as long as it is, s h. N falls with p and is convex, so that there is one
-solution. Pressures are continuous in the motion, and forces have continuous derivatives.
+The first derivative raises the conductance k of the outer link to k / s, that of a link of the length s h. N falls
+with p and is convex, so that there is one solution. Pressures are continuous in the motion, and forces have continuous
+derivatives.
 
-N is zero where the wedge builds pressure up (f <= 0), in films at rest, without pressure flow in theta, and next to
-columns with prescribed pressure, in which no line is to be looked for.
+N is zero where the wedge builds pressure up (f <= 0), in films at rest, and without pressure flow in theta. Next to
+columns with prescribed pressure no line is assumed, so that N is zero there as well.
 """
 
 from __future__ import annotations
@@ -32,13 +33,13 @@ from exudyn_ehd.film.grid import Mesh
 from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.reynolds.links import LinkFlux
 
-# Smallest s of a vertex in the film, as dp/ds vanishes at 0: what lies below is the rounding of its neighbours'
-# pressures.
-LEAST = 1e-8
+# Smallest s of an active vertex, as dp/ds vanishes at 0. Below it, s is round-off of the neighbours' pressures. Larger
+# limits falsify N, smaller ones allow larger entries -dN/dp of the matrix.
+SMALLEST_S = 1e-8
 
 
-def straight(shape: tuple[int, int]) -> np.ndarray:
-    """Return the fields (9, n m) of a `RuptureLine` that lies at no vertex."""
+def fields_without_line(shape: tuple[int, int]) -> np.ndarray:
+    """Return the fields (9, n m) of a `RuptureLine` for a film without a line inside its cells."""
     fields = np.zeros((9, shape[0] * shape[1]))
     fields[6] = 1.0
     return fields
@@ -50,7 +51,7 @@ class RuptureLine:
     Parameters
     ----------
     block : (9, n m) array
-        Its fields; see below.
+        Fields; see the attribute.
     shape : (int, int)
 
     Attributes
@@ -61,7 +62,7 @@ class RuptureLine:
     whole : (n m,) array
         Pressure above the cavity's at s = 1.
     f, k, s : (n, m) arrays
-        Of ``block``.
+        Views of ``block``.
     """
 
     def __init__(self, block: np.ndarray, shape: tuple[int, int]) -> None:
@@ -78,14 +79,14 @@ class RuptureLine:
         squeeze: bool,
         mesh: tuple[np.ndarray, ...],
     ) -> Gradients:
-        """`Gradients` of -N in the last solution's balances, to the film's ``gaps`` at vertices and links."""
+        """Derivatives of -N in the balances of the last solution, with its ``gaps`` at vertices and links."""
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
         return Gradients(*line_rows(self.block, work.number, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh))
 
 
 @njit(cache=True, inline="always")
 def line_terms(kx, b, fixed, in_cells, line):
-    """f and k of all vertices, and what follows from them; f = 0 where the line is not looked for ``in_cells``."""
+    """Set f, k and ``whole`` of all vertices in the fields ``line``; f is 0 everywhere if not ``in_cells``."""
     links, rest, known, m = kx.reshape(-1), b.reshape(-1), fixed.reshape(-1), b.shape[1]
     f, k, whole = line[0], line[1], line[4]
     if not in_cells:
@@ -117,8 +118,8 @@ def _clear_known(before, known, behind, f, whole):
 
 @njit(cache=True, inline="always")
 def weigh_line(line, number):
-    """Rows of the balances at the line, their flat vertices, and weights (2, c): derivatives of -N to the right-hand
-    side b and to the mean conductance k."""
+    """Return the rows of the balances at the line, their flat vertices, and weights (2, c): derivatives of -N to the
+    right-hand side b and to the mean conductance k."""
     f, k, s, numbers, found = line[0], line[1], line[6], number.reshape(-1), 0
     rows, places, weights = np.empty(s.size, dtype=np.int64), np.empty(s.size, dtype=np.int64), np.empty((2, s.size))
     for c in range(s.size):
@@ -140,10 +141,10 @@ def line_rows(line, number, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, me
 
 @njit(cache=True)
 def line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh, by):
-    """`Gradients.by` of the last solution at ``places`` (c,) added to ``by`` (10, c).
+    """Add the derivatives (`Gradients.by`) of the last solution's balances at ``places`` (c,) to ``by`` (10, c).
 
-    ``weights``: of `weigh_line`; ``slopes``, ``by_speed``: `LinkFlux.slopes` and `LinkFlux.by_speed`, as for
-    `exudyn_ehd.film.reynolds.link_derivatives.link_derivatives`.
+    ``weights``: as from `weigh_line`; ``slopes``, ``by_speed``: `LinkFlux.slopes` and `LinkFlux.by_speed`, None for a
+    plain film.
     """
     mesh = Mesh(*mesh)
     n, m = H.shape

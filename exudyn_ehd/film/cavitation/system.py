@@ -1,23 +1,24 @@
-"""One film problem and its solution, as arrays that closures read and write; steady films that are not determined.
+"""One film problem and its solution, as arrays that closures read and write; steady films without a unique solution.
 
 Symbols: kx, kz conductances of the links, b right-hand side, P pressure, all scaled (see
 `exudyn_ehd.film.reynolds.links`).
 
-Steady mass-conserving films that their equations alone do not determine
-------------------------------------------------------------------------
+Steady mass-conserving films without a unique solution
+------------------------------------------------------
 Let u be the pressure above the cavity's at full vertices and fill - 1 at cavitated ones, and R(u) the balances of
-`exudyn_ehd.film.cavitation.closures`. The derivatives dR_i / du_j are <= 0 for i not j. The sum s_j of column j is
-what leaves the film for good: conductances to prescribed vertices, Couette flow to those downstream, and ``area dH/dt``
-in a cavity. Two films u and v have ``sum_i sign(u_i - v_i) (R_i(u) - R_i(v)) >= sum_j s_j |u_j - v_j|``. With s >= 0,
-and every vertex connected to one with s > 0, R is an M-function and the film the only one (W. C. Rheinboldt, J. Math.
-Anal. Appl. 32 (1970) 274). Two kinds of films do not have that:
+`exudyn_ehd.film.cavitation.closures`. The derivatives dR_i / du_j are <= 0 for i not j. The sum s_j of column j is the
+flow that leaves the film per unit of u_j: conductances to prescribed vertices, Couette flow to those downstream, and
+``area dH/dt`` in a cavity. Two films u and v satisfy
+``sum_i sign(u_i - v_i) (R_i(u) - R_i(v)) >= sum_j s_j |u_j - v_j|``. If s >= 0, and if every vertex is connected to one
+with s > 0, R is an M-function and the film is unique (W. C. Rheinboldt, J. Math. Anal. Appl. 32 (1970) 274). Two kinds
+of films do not satisfy this condition:
 
-* The gap closes at a rate that lasts. Where it closes faster than oil flows out, a dry cavity may stay dry or fill up.
-  The film is then the largest one, which a cold start or pseudo time reaches from the full side: such films take no
-  warm start.
-* Oil goes round in a row that has neither prescribed vertices nor pressure (`has_unfed_row`), without rates and axial
-  Couette flow: ``fill H`` is the same all around, and any number up to the minimum film thickness. A row whose
-  neighbour has pressure is fed by it.
+* The gap of a steady film closes at a constant rate. Where it closes faster than oil flows out, a dry cavity may stay
+  dry or fill up. The film with the most oil is chosen. A cold start or pseudo-transient continuation finds it, as they
+  start from a full film; a warm start may not.
+* Oil circulates in a row that has neither prescribed vertices nor pressure (`has_unfed_row`), without rates and axial
+  Couette flow. ``fill H`` is then constant around the row, with any value from 0 to the minimum film thickness. A row
+  whose neighbour has pressure receives oil from it.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from numba import njit
 
 from exudyn_ehd.film.cavitation.linear_film import ColumnLine, column_line
 from exudyn_ehd.film.cavitation.oil_line import OilLine
-from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, straight
+from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, fields_without_line
 from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import DensityField
@@ -36,61 +37,61 @@ from exudyn_ehd.status import Status
 
 
 class FilmSystem:
-    """One film problem and its solution, as arrays that closures read and write; steady films that are not determined.
+    """Arrays of one film problem and its solution.
 
     Attributes
     ----------
     kx, kz, b : (n, m) arrays
         Link conductances and right-hand side.
     fixed : (n, m) bool array
-        Vertices whose entry of ``pressure`` is prescribed.
+        Vertices with prescribed ``pressure``.
     cavity_pressure : float
-        Scaled.
+        Scaled cavity pressure.
     pressure : (n, m) array
-        In: prescribed values at fixed vertices. Out: the film's pressure.
+        In: prescribed values at fixed vertices. Out: pressure of the film.
     linear_pressure : (n, m) array
-        Pressure that solves the linear film, on which the adjoint is received; the same array as ``pressure`` unless
-        other pressures count in loads: clipped ones, or those up to a line inside the cells.
+        Pressure that solves the balances, to which adjoints refer. It is the same array as ``pressure``, unless loads
+        are integrals of other pressures: clipped ones, or means up to a rupture line inside the cells.
     flow_pressure : (n, m) array
-        Pressure that drives flows inside the film: ``pressure``, or where a line lies between columns the linear one.
+        Pressure that drives flows inside the film: ``pressure``, or ``linear_pressure`` if there is a ``column_line``.
     continued : (n, m) array or None
-        ``linear_pressure``, beyond a rupture line with the negative pressures that place it inside the cells of
-        `exudyn_ehd.film.cavitation.linear_film.mean_in_cells`; None where no line lies there.
+        ``linear_pressure``, with negative pressures beyond the rupture line, from which
+        `exudyn_ehd.film.cavitation.linear_film.mean_in_cells` finds the line; None if that function is not used.
     column_line : ColumnLine or None
-        What continues it in a film of Swift and Stieber without pressure flow in theta.
+        Continuation of the pressure beyond the line, in a film of Swift and Stieber without pressure flow in theta.
     fx, fz, H, H_t, area : (n, m) arrays
         Couette fluxes of a full film, gap, its rate, control volumes; ``b`` already holds the fluxes and the squeeze.
     fill, mass_old : (n, m) arrays
-        Film fraction, and the old value of fill H; only used by closures that conserve mass.
+        Film fraction, and fill H at the start of the step; only used by closures that conserve mass.
     prompt, late : (n, m) arrays
-        Of `exudyn_ehd.film.reynolds.links`; 1 and 0 without.
+        Couette flows carry the fill ``prompt fill + late``, see `exudyn_ehd.film.reynolds.links`; 1 and 0 if it is not
+        averaged over the step.
     inverse_step : float
         1 / time step since ``mass_old``, 1/s; 0: steady.
     closes : bool
-        Whether a steady film conserves mass and its gap closes somewhere; see
-        `exudyn_ehd.film.cavitation.system`.
+        Whether the film is steady, conserves mass, and has a gap that closes somewhere; see the module.
     turns : float
-        Scaled speed with which oil goes round in the rows of a steady film that conserves mass, 1/s; 0 with axial
+        Scaled speed with which oil circulates in the rows of a steady film that conserves mass, 1/s; 0 with axial
         speed.
     rupture : RuptureLine
-        Where a film of Swift and Stieber ends.
+        Rupture line of a film of Swift and Stieber, inside the cells or on vertices.
     line : RuptureLine or None
-        The same if it may end inside its cells; None: on vertices.
+        The same if the line lies inside the cells; None: on vertices.
     oil_line : OilLine or None
-        The same of a film that conserves mass.
+        Rupture line inside the cells of a film that conserves mass; None: on vertices.
     curve : (9, n m) array
-        `CurveFields` of the vertices; straight ones of a film without a line in its cells.
+        `CurveFields` of the vertices, with f = 0 and s = 1 where there is no line inside the cells.
     density : DensityField or None
         None: the density does not follow the pressure.
     instant : bool
-        Whether the time step stands for none.
+        Whether the time step is only a small number with which the rates at an instant are found.
     linked : (n,) bool array
         Columns with a link to the next one.
     terms : FilmTerms
-        Holds kx, kz, fx, fz, area and prompt. Couette flows take ``prompt fill + terms.late`` along: on curves it is
-        smaller than ``late``.
+        Holds kx, kz, fx, fz, area and prompt. Couette flows carry the fill ``prompt fill + terms.late``: on curves,
+        ``terms.late`` is smaller than ``late``.
     fields : (15, n, m) array
-        Those of ``terms``, then b, H, HF (gap on the links i -> i+1), H_t and pressure.
+        Fields of ``terms``, then b, H, HF (gap on the links i -> i+1), H_t and pressure.
     """
 
     def __init__(self, grid: FilmGrid, kind: int) -> None:
@@ -114,14 +115,15 @@ class FilmSystem:
         self.line: RuptureLine | None = None
         self.column_line: ColumnLine | None = None
         self.continued: np.ndarray | None = None
-        self.rupture = RuptureLine(straight(shape), shape)
+        self.rupture = RuptureLine(fields_without_line(shape), shape)
         self.oil_line: OilLine | None = None
         self.density: DensityField | None = None
         self.instant = False
         self.linked = grid.link_x != 0.0
 
     def count_in_cells(self, grid: FilmGrid, clips: bool) -> None:
-        """Let pressures count in loads up to a line inside the cells: where the film is clipped, or between columns."""
+        """Use means up to a rupture line inside the cells as pressures in loads: of the clipped linear film
+        (``clips``), or of a film without pressure flow in theta."""
         if clips:
             self.continued = self.linear_pressure
             return
@@ -129,20 +131,21 @@ class FilmSystem:
         self.linear_pressure, self.continued = line.solved, line.continued
         self.flow_pressure = line.solved
 
-    def see_motion(self, steady: bool, rate: np.ndarray, vx: float, vz: float) -> None:
-        """Take over the gap's rate (n, m) and the scaled speeds of a film that conserves mass."""
+    def set_motion(self, steady: bool, rate: np.ndarray, vx: float, vz: float) -> None:
+        """Set ``closes`` and ``turns`` from the gap's rate (n, m) and the scaled speeds of a film that conserves
+        mass."""
         self.closes = steady and bool(rate.min() < 0.0)
         self.turns = abs(vx) if steady and vz == 0.0 else 0.0
 
     def take_density(self, density: DensityField) -> None:
-        """Let the density follow the pressure in all later solutions."""
+        """Use a density that follows the pressure in all later solutions."""
         self.density = density
         if self.kind != OIL:
             self.fill, self.mass_old = np.ones((2, *self.H.shape))
 
     @property
     def curve(self) -> np.ndarray:
-        """Fields of the vertices' curves, of a film that Newton's method solves."""
+        """`CurveFields` of the vertices (9, n m), for films that Newton's method solves."""
         return self.rupture.block
 
     @property
@@ -157,17 +160,18 @@ class FilmSystem:
 
     @property
     def floor(self) -> float:
-        """Scaled pressure below which the density stays."""
+        """Scaled pressure below which the density is constant."""
         return self.cavity_pressure if self.kind >= CLIPPED else -np.inf
 
 
-# Pressure times the gap's square over the scaled speed, below which a vertex has none: a share of the Couette flow. A
-# wedge makes some of its eccentricity ratio, rounding some 1e-16. Larger values take slightly fed films for dry ones.
-NO_PRESSURE = 1e-9
+# Pressure times the square of the gap over the scaled speed, a measure relative to the Couette flow, below which a
+# vertex counts as being without pressure. A wedge causes about its eccentricity ratio, round-off about 1e-16. With
+# larger values, rows with little oil supply count as unfed.
+SMALLEST_PRESSURE = 1e-9
 
 
 def status_of(s: FilmSystem, status: Status) -> Status:
-    """Return the status of a solution; NO_OIL if nothing but time determines how much oil a steady one has."""
+    """Return the status of a solution; NO_OIL for a steady film in which a row receives no oil."""
     if status is not Status.CONVERGED or s.turns == 0.0:
         return status
     unfed = has_unfed_row(s.pressure, s.H, s.fixed, s.turns, s.cavity_pressure)
@@ -176,14 +180,14 @@ def status_of(s: FilmSystem, status: Status) -> Status:
 
 @njit(cache=True)
 def has_unfed_row(P, H, fixed, turns, pc):
-    """Return whether oil goes round in a row without pressure or prescribed vertices; ``turns`` of `FilmSystem`."""
+    """Return whether oil circulates in a row without pressure or prescribed vertices; ``turns`` of `FilmSystem`."""
     n, m = P.shape
     for j in range(m):
         fed = turns == 0.0
         for i in range(n):
             if fed:
                 break
-            fed = fixed[i, j] or (P[i, j] - pc) * H[i, j] * H[i, j] > NO_PRESSURE * turns
+            fed = fixed[i, j] or (P[i, j] - pc) * H[i, j] * H[i, j] > SMALLEST_PRESSURE * turns
         if not fed:
             return True
     return False
@@ -191,11 +195,19 @@ def has_unfed_row(P, H, fixed, turns, pc):
 
 @njit(cache=True)
 def imbalance(terms, P, balance, full, ruptures, stored):
-    """Return the largest balance (n, m) of an unknown vertex over the largest flow that drives the film, and over the
-    largest flow that it has; P (n, m) above the cavity's.
+    """Return the largest residual of an unknown vertex over the largest flow that drives the film, and over the largest
+    flow of any kind.
 
-    Of a film that ``ruptures`` without a memory the ``full`` vertices alone are unknown. ``stored``: largest flow into
-    storage of which the terms hold a difference.
+    Driving flows are Couette flows, storage, and pressure flows at prescribed vertices.
+
+    Parameters
+    ----------
+    P, balance : (n, m) arrays
+        Pressure above the cavity's, and residual.
+    full, ruptures : (n, m) bool array, bool
+        In a film that ``ruptures`` without mass conservation only ``full`` vertices have unknowns.
+    stored : float
+        Largest flow into storage of which the terms hold only a small difference; counts among flows of any kind.
     """
     worst, drive, most = 0.0, 0.0, stored
     n, m = P.shape

@@ -1,15 +1,15 @@
 """Mass balance of a film and its derivatives, for every film whose gap or density follows the pressure.
 
-The film at one state is a set of coefficients, `FilmTerms`. With the mean
-density rho of a link's ends and the fill of its upstream end,
+The state of a film enters by its coefficients, `FilmTerms`. With the density ratios rho of a link's ends and the fill
+of its upstream end, the terms of the balance are
 
     flow over the link a -> b    k (P_a - P_b) + f (prompt fill + late)_upstream (rho_a + rho_b) / 2,
-    storage of a vertex          area (rho (grow fill + known) + kept),
+    storage of a vertex          area (rho (grow fill + known) + kept).
 
-the balance is what leaves a vertex and what it stores; ``prompt`` and ``late`` are 1 and 0, or those of
-`exudyn_ehd.film.reynolds.links`. Its derivatives to the unknowns (P
-where ``full``, else the fill) are kept per link, the slopes that `banded.assemble` takes: those
-through the density here, those through the gap in `exudyn_ehd.film.solvers.liner.elements`.
+The balance of a vertex is the sum of outflow and storage, less the inflow. ``prompt`` and ``late`` are 1 and 0, or
+those of `exudyn_ehd.film.reynolds.links`. The derivatives to the unknowns (P where ``full``, else the fill) are stored
+per link, as ``slopes`` for `banded.assemble`. The derivatives through the density are set here, those through the gap
+in `exudyn_ehd.film.solvers.liner.elements`.
 """
 
 from __future__ import annotations
@@ -23,8 +23,12 @@ from exudyn_ehd.film.kernels import FAST, I0, I1
 
 
 class FilmTerms(NamedTuple):
-    """One film's coefficients, (n, m) each: conductances and Couette fluxes of
-    the links, storage, areas, shares of the fill that flows carry, prescribed vertices."""
+    """Coefficients of one film, (n, m) each.
+
+    ``kx``, ``kz``, ``fx``, ``fz``: conductances and Couette fluxes of the links; ``grow``, ``known``, ``kept``:
+    storage, see the module; ``area``: control volumes; ``prompt``, ``late``: fill of the flows out of a vertex, see the
+    module; ``fixed``: vertices with prescribed pressure.
+    """
 
     kx: np.ndarray
     kz: np.ndarray
@@ -41,7 +45,7 @@ class FilmTerms(NamedTuple):
 
 @njit(cache=True, inline="always")
 def terms_of(f, fixed):
-    """`FilmTerms` of their fields (10, n, m)."""
+    """Return `FilmTerms` of an array of fields (10, n, m)."""
     return FilmTerms(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], f[9], fixed)
 
 
@@ -52,9 +56,9 @@ def store_content(f, H, H_t, inverse_step, mass_old, instant):
     Parameters
     ----------
     inverse_step : float
-        1 / time step since the content ``mass_old`` (n, m), 1/s; 0 of a steady film.
+        1 / time step since the content ``mass_old`` (n, m), 1/s; 0 for a steady film.
     instant : bool
-        Whether the step stands for an instant, whose storage keeps the volume.
+        Whether the step is only a small number for the rates at an instant; the storage is then one of volume.
     """
     n, m = H.shape
     for i in range(n):
@@ -66,9 +70,9 @@ def store_content(f, H, H_t, inverse_step, mass_old, instant):
 
 @njit(cache=True)
 def oil_links(film, full):
-    """Return links in theta (0: none), unknown vertices, and vertices that are full or prescribed, (n, m) each.
+    """Return links in theta (0: none), vertices with unknowns, and full or prescribed vertices, (n, m) each.
 
-    Oil also links columns that exchange no pressure flow (short bearings).
+    Couette flow also links columns without pressure flow between them (short bearings).
     """
     links, free, sets = np.empty(full.shape), np.empty(full.shape, dtype=np.bool_), np.empty(full.shape, dtype=np.bool_)
     for i in range(full.shape[0]):
@@ -80,7 +84,7 @@ def oil_links(film, full):
 
 @njit(cache=True)
 def part(x, start, stop):
-    """Part of a field, flat; None of None."""
+    """Return a part of a field, flat; None for None."""
     if x is None:
         return None
     return x.reshape(-1)[start:stop]
@@ -88,7 +92,7 @@ def part(x, start, stop):
 
 @njit(cache=True)
 def flat(x):
-    """Return a field, flat; None of None."""
+    """Return a field, flat; None for None."""
     if x is None:
         return None
     return x.reshape(-1)
@@ -96,7 +100,7 @@ def flat(x):
 
 @njit(cache=True)
 def carried_fill(fill, film):
-    """Fill (n, m) that leaves every vertex with the Couette flows; None of None."""
+    """Return the fill (n, m) of the Couette flows out of every vertex; None for None."""
     if fill is None:
         return None
     out = np.empty(fill.shape)
@@ -108,7 +112,7 @@ def carried_fill(fill, film):
 
 @njit(cache=True)
 def both(x, start, stop, there, end):
-    """Parts of a field at both ends of links; None of None."""
+    """Return the parts of a field at both ends of links; None for None."""
     return part(x, start, stop), part(x, there, end)
 
 
@@ -124,10 +128,9 @@ def _upstream(f, fill_a, fill_b, rho_a, rho_b, up):
 
 @njit(cache=True)
 def upstream(fx, fz, fill, rho):
-    """Return the fill (2, n m) that the Couette flows fx, fz take along from upstream, in theta and z, times the mean
-    density.
+    """Return the upstream fill times the mean density (2, n m) of the Couette flows fx, fz, in theta and z.
 
-    ``fill`` is what flows carry; it and the density ratio ``rho`` are (n, m), or None where they are one everywhere.
+    ``fill``: fill of the flows out of every vertex; ``rho``: density ratio; (n, m) each, or None if 1 everywhere.
     """
     m, size = fx.shape[1], fx.size
     last, e, up = size - m, size - 1, np.ones((2, size))
@@ -146,7 +149,7 @@ def _link_flows(k, f, P_a, P_b, up, out):
 
 @njit(cache=True, fastmath=FAST)
 def _gather_flows(area, grow, known, kept, fill, rho, across, across_in, along, along_in, out):
-    """Flows that leave and the mass in store, less the flows that come in, flat."""
+    """Set the balances, flat: outflow and storage less inflow."""
     for c in range(out.size):
         store = grow[c]
         if fill is not None:
@@ -159,8 +162,10 @@ def _gather_flows(area, grow, known, kept, fill, rho, across, across_in, along, 
 
 @njit(cache=True)
 def film_balance(P, fill, rho, film, out):
-    """Mass that leaves every vertex (n, m) and that it stores: 0 where the film
-    is solved; None for a fill or density of one everywhere."""
+    """Set the balance of every vertex (n, m), outflow and storage less inflow: 0 at unknown vertices of a solution.
+
+    ``fill``, ``rho``: None if they are 1 everywhere.
+    """
     n, m = P.shape
     size = n * m
     last, e, p, q = size - m, size - 1, P.reshape(-1), out.reshape(-1)
@@ -191,7 +196,7 @@ def film_balance(P, fill, rho, film, out):
 
 @njit(cache=True, fastmath=FAST)
 def violation(r, P, fixed, pc, complementary):
-    """Norm of the balances that do not hold; at pc oil may be drawn away if ``complementary``."""
+    """Return the norm of the residuals; if ``complementary``, positive ones at the cavity pressure pc are allowed."""
     leaves, x, known = r.reshape(-1), P.reshape(-1), fixed.reshape(-1)
     total = 0.0
     for c in range(x.size):
@@ -203,8 +208,8 @@ def violation(r, P, fixed, pc, complementary):
 
 @njit(cache=True, fastmath=FAST)
 def _link_slopes(k, f, step, fill, full, rho, rho_P, prompt, by_a, by_b):
-    """Set the derivatives of the flows over the links from vertices a to b, ``step`` behind them, at fixed gaps to the
-    unknowns at both ends; ``fill``: what flows carry."""
+    """Set the derivatives of the flows over the links a -> b, with b = a + ``step``, to the unknowns at both ends, at
+    fixed gaps; ``fill``: fill of the flows out of every vertex."""
     size = k.size
     for a in range(size):
         b = a + step if a + step < size else a + step - size
@@ -223,7 +228,7 @@ def _link_slopes(k, f, step, fill, full, rho, rho_P, prompt, by_a, by_b):
 
 @njit(cache=True, fastmath=FAST)
 def _storage_slopes(area, full, fill, rho, by, grow, known, out):
-    """Derivatives of the storage at fixed gaps to the unknowns, flat."""
+    """Set the derivatives of the storage to the unknowns at fixed gaps, flat."""
     for c in range(out.size):
         by_fill = area[c] * grow[c]
         slope = 0.0
@@ -240,11 +245,10 @@ def _storage_slopes(area, full, fill, rho, by, grow, known, out):
 
 @njit(cache=True)
 def film_slopes(fill, full, rho, rho_P, film, slopes):
-    """Derivatives (5, n m) as `banded.assemble` takes them, at fixed gaps;
-    unknowns are pressures where ``full``, else fills.
+    """Set the derivatives (5, n m) of flows and storage for `banded.assemble`, at fixed gaps.
 
-    ``fill`` and ``full``, ``rho`` and ``rho_P`` are None together: a film that
-    is full everywhere, an incompressible one.
+    Unknowns are pressures where ``full``, else fills. ``fill`` and ``full`` are None for a film that is full
+    everywhere, ``rho`` and ``rho_P`` for an incompressible one.
     """
     by = flat(carried_fill(fill, film)), flat(full), flat(rho), flat(rho_P), film.prompt.reshape(-1)
     _link_slopes(film.kx.reshape(-1), film.fx.reshape(-1), film.kx.shape[1], *by, slopes[0], slopes[1])

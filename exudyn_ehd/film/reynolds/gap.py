@@ -1,4 +1,4 @@
-"""Gap of a tilted rigid journal in a bore, slopes of what adds to it, and gaps with steps.
+"""Gap of a tilted rigid journal in a bore, slopes of additional gap terms, and gaps with steps.
 
 ``H = 1 - (x + bx z) cos theta - (y + by z) sin theta (+ extra)`` in scaled lengths: x, y divided by c; z by R; bx, by
 multiplied by R/c. Paper, Eqs. (3), (5), (7). The gap's rate at fixed theta is the same expression in the rates, without
@@ -8,16 +8,16 @@ Symbols: pose = (x, y, bx, by) scaled, cos_x / sin_x at vertices, cos_f / sin_f 
 
 Gaps with steps (pockets, textures, edges of grooves)
 -----------------------------------------------------
-Between two vertices lie two halves of a link with gaps h1 and h2. The same flow passes both,
+A link between two vertices consists of two halves with gaps h1 and h2. The flow is the same in both,
 
     q = V h1 - h1^3 (pf - p1) / (ds / 2) = V h2 - h2^3 (p2 - pf) / (ds / 2),
 
-which without the pressure pf on the face is
+or, with the pressure pf on the face eliminated,
 
     q = V c - g (p2 - p1) / ds,   g = 2 / (1/h1^3 + 1/h2^3),   c = (1/h1^2 + 1/h2^2) / (1/h1^3 + 1/h2^3).
 
-The flow over a step is then exact for a gap that is constant on both sides; a smooth gap stays of second order. Without
-it the mean gap of both vertices is used, which is of first order at a step.
+The flow over a step is then exact if the gap is constant on both sides; for a smooth gap it is of second order. Without
+this model the mean gap of both vertices is used, which is of first order at a step.
 """
 
 from __future__ import annotations
@@ -53,10 +53,11 @@ def largest_eccentricity(pose, half_length):
 
 @njit(cache=True, inline="always")
 def rigid_gaps(pose, rate, squeeze, at, half_length, closed, H, HF, H_t):
-    """Gaps of a rigid journal at vertices and links, with ``squeeze`` also their rate; returns the smallest gap.
+    """Set the gaps of a rigid journal at vertices and links, with ``squeeze`` also their rate; returns the minimum film
+    thickness.
 
-    ``at``: `exudyn_ehd.film.grid.FilmGrid.directions`; ``closed``: whether the grid is a ring. On arcs the
-    smallest gap is one of vertices and links; a link behind an arc's last column lies on that column.
+    ``at``: `exudyn_ehd.film.grid.FilmGrid.directions`; ``closed``: whether the grid is a ring. For a ring the minimum
+    is exact, for arcs it is that of vertices and links; the link behind an arc's last column lies on that column.
     """
     cos_x, sin_x, cos_f, sin_f, z = at
     rigid_gap(pose, cos_x, sin_x, z, 1.0, H)
@@ -72,7 +73,7 @@ def gap_slopes(field: np.ndarray, grid: FilmGrid) -> tuple[np.ndarray, np.ndarra
     """Mean on the links in theta (n, m), and slopes (2, n, m) in theta and in scaled z, of a field (n, m).
 
     Central differences, one-sided at the ends of z and at columns without a link: of second order inside on any spacing
-    of z, of first order at its ends. Behind a column without a link its own values stand for the next ones.
+    of z, of first order at its ends. Behind a column without a link its own values replace those of the next column.
     """
     before, after = grid.beside
     ahead = field[after]
@@ -81,8 +82,10 @@ def gap_slopes(field: np.ndarray, grid: FilmGrid) -> tuple[np.ndarray, np.ndarra
 
 
 def transposed_slopes(field: np.ndarray, grid: FilmGrid) -> np.ndarray:
-    """Fields (2, n, m) whose products with any gap term are those of ``field`` (n, m) with its slopes of `gap_slopes`,
-    on a ring."""
+    """Transpose of the slopes of `gap_slopes` on a ring.
+
+    The sums of the returned fields (2, n, m) times a gap term are those of ``field`` (n, m) times the term's slopes.
+    """
     along = field / (2.0 * grid.width_x[:, None])
     return np.stack((np.roll(along, 1, axis=0) - np.roll(along, -1, axis=0), field @ grid.differences_z))
 
@@ -92,7 +95,7 @@ def add_gap(
 ) -> tuple[float, np.ndarray]:
     """Add an elastic gap (n, m) and its rate to the gaps and their rate.
 
-    Returns the smallest gap, and the slopes (2, n, m) of `gap_slopes`.
+    Returns the minimum film thickness, and the slopes (2, n, m) of `gap_slopes`.
     """
     link, slopes = gap_slopes(field, grid)
     H += field
@@ -102,7 +105,7 @@ def add_gap(
 
 
 class SteppedGap(FluxEffect):
-    """Flux effect: links between two vertices as two halves of constant gap.
+    """Flux effect for gaps with steps: every link consists of two halves of constant gap.
 
     For prescribed gaps only: the derivatives with respect to the link's gap are left at zero.
 
@@ -127,7 +130,7 @@ class SteppedGap(FluxEffect):
 def stepped_links(
     H: np.ndarray, gx_out: np.ndarray, cx_out: np.ndarray, gz_out: np.ndarray, cz_out: np.ndarray
 ) -> None:
-    """Conductance and carrier of all links (n, m) from the gaps at the vertices."""
+    """Set conductance and carrier of all links (n, m) from the gaps at the vertices."""
     H3 = H * H * H
     for axis, g, c in ((0, gx_out, cx_out), (1, gz_out, cz_out)):
         b, b3 = np.roll(H, -1, axis), np.roll(H3, -1, axis)

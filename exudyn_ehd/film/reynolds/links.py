@@ -1,4 +1,4 @@
-"""Finite-volume Reynolds equation in scaled form: coefficients of the links, right-hand side, balance of the vertices.
+"""Finite-volume Reynolds equation in scaled form: coefficients of the links, right-hand side, residual of the vertices.
 
 With H = h/c, lengths over R and P = p c^2 / (12 mu R^2) in 1/s, the balance of a control volume reads
 
@@ -7,31 +7,33 @@ With H = h/c, lengths over R and P = p c^2 / (12 mu R^2) in 1/s, the balance of 
 which is the conservative form of the paper's Eq. (4) (Poiseuille and Couette flux of a thin film, squeeze). Links in
 theta use the gap on the link itself, ``HF``; links in z the mean of both vertices, which is exact for a tilted journal.
 
-An effect (flow factors of rough surfaces, shear thinning, a temperature field) changes what a link carries to
-``V carrier - conductance dP/ds``; a plain film has the carrier H, the conductance H^3 and no `LinkFlux`.
+With an effect (flow factors of rough surfaces, shear thinning, a temperature field) the flow over a link is
+``V carrier - conductance dP/ds``. A plain film has the carrier H, the conductance H^3 and no `LinkFlux`.
 
 Symbols: H (n, m) gap at vertices, HF (n, m) gap on the link i -> i+1, kx / kz link conductances with their metric, fx /
 fz Couette fluxes with their metric, b right-hand side of ``A P = b``, P scaled pressure.
 
 Couette flows out of a cavity, averaged over the step: transport of second order in time
 ----------------------------------------------------------------------------------------
-The balance of a film that the flows carry along at a speed U is, in terms of the void ``v = H - fill H``,
+With the void ``v = H - fill H`` and the transport speed U, the mass balance of a film reads
 
     dv/dt + div (U v) = dH/dt + div (U H) + div (pressure flow).
 
-Backward Euler in v is of first order, and damps or feeds whirl. With the right side at the end of a step and the void
-on the left as its mean over the step, voids are those of half a step later: all that meets at the end of a step is of
-its time, to second order, however far the gap moves. A mean of fills is not: beside a gap that moves it leaves
-``U (1 - fill) dH/dt h / 2``, more than backward Euler does. So what leaves a vertex with a full film's flux f is
+Backward Euler in v is of first order, and damps or excites whirl. Here the right side is taken at the end of a step,
+and the void in ``div (U v)`` is averaged over the step. Both sides are then consistent to second order, for any change
+of the gap. Averaged fills would not be: where the gap moves they cause the error ``U (1 - fill) dH/dt h / 2``, which is
+more than that of backward Euler. So the flow out of a vertex, with the flux f of a full film, is
 
     f (1 - ((1 - w) v + w v_old) / H) = f ((1 - w) fill + w late),    late = 1 - v_old / H,
 
-the same for all its links: flows and mass balance to rounding. H is foretold from gap and rate at the start of the
-step, which is as exact and leaves ``late`` and w known: the film's equations stay linear, and its derivatives exact.
+with the same factor for all links of the vertex: mass is conserved to round-off. H is extrapolated from gap and rate at
+the start of the step. This is of the same order, and makes ``late`` and w known before the step: the film's equations
+stay linear, and its derivatives exact.
 
-A void that nothing feeds shrinks by ``(1 - w C) / (1 + (1 - w) C)`` in a step that renews the C-fold of the content, so
-that it neither changes sign nor stays for ``w C < 1``. What ``late`` takes along is no more than half of the content,
-for any C; w vanishes in gaps that open or close by more than the oil in them.
+If a step carries C times the content of a vertex away, a void without inflow is multiplied by
+``(1 - w C) / (1 + (1 - w) C)``. For ``w C < 1`` this lies between 0 and 1, so that the void decays without a change of
+sign. For any C, ``late`` carries at most half of the content away. w is 0 in gaps that open or close by more than the
+oil in them.
 
 Differences and sums over the links
 -----------------------------------
@@ -57,7 +59,7 @@ class LinkFlux(NamedTuple):
     ----------
     carriers, speeds : bool
         Whether an effect changes the carriers, or lets conductances depend on the speed. If not, the carriers are the
-        gaps themselves and the derivatives stay what they are here.
+        gaps, and the derivatives keep their initial values.
     gap_x, gap_z : arrays
         Gaps of the links in theta (the film solver's own array) and in z.
     gx, gx_h, gx_v, gz, gz_h, gz_v : arrays
@@ -103,20 +105,21 @@ class LinkFlux(NamedTuple):
         return (self.gx_v, self.gz_v) if self.speeds else None
 
     def reset(self) -> None:
-        """Plain carriers, and no dependence on the speed, where effects have left others."""
+        """Reset the carriers to those of a plain film, and the derivatives to the speed to 0, if effects change
+        them."""
         if self.carriers:
             self.cx[:], self.cz[:] = self.gap_x, self.gap_z
             self.cx_h[:] = self.cz_h[:] = 1.0
         self.reset_speeds()
 
     def reset_speeds(self) -> None:
-        """No dependence on the speed, where effects have left one."""
+        """Reset the derivatives to the speed to 0, if effects change them."""
         if self.speeds:
             self.gx_v[:] = self.gz_v[:] = 0.0
 
 
 class Fluidity(Protocol):
-    """A viscosity that varies with the temperature: its ratio at the vertices, and 1 over it on the links, (n, m) or
+    """Viscosity ratio that varies with the temperature, at the vertices, and its inverse on the links, (n, m) or
     (1, 1)."""
 
     ratio: np.ndarray
@@ -125,12 +128,12 @@ class Fluidity(Protocol):
 
 
 class FluxEffect(Protocol):
-    """An effect that changes `LinkFlux` in place.
+    """Effect that changes `LinkFlux` in place.
 
     Attributes
     ----------
     changes_carriers, depends_on_speed : bool
-        Whether it changes the carriers, or the conductances by the speed.
+        Whether the effect changes the carriers, and whether its conductances depend on the speed.
     """
 
     changes_carriers: bool
@@ -150,15 +153,16 @@ class FluxEffect(Protocol):
 
 
 class ShearFactor(Protocol):
-    """Factor on the viscosity of Couette shear that depends on the gap, on the sliding speed, and maybe on gradients of
-    the pressure."""
+    """Viscosity factor of Couette shear, a function of the gap, of the sliding speed, and possibly of pressure
+    gradients."""
 
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
     ) -> np.ndarray | None:
-        """mu/mu_0 at the vertices with its derivatives with respect to H and vx.
+        """Set mu/mu_0 at the vertices and its derivatives to H and vx.
 
-        Returns those (2, n, m) to the gradients of the solver's unknown along theta and z, None if there are none.
+        Returns its derivatives (2, n, m) to the gradients of the solver's unknown along theta and z; None if it does
+        not depend on them.
         """
 
 
@@ -171,7 +175,8 @@ class ShearProduct:
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
     ) -> np.ndarray | None:
-        """Product of both factors with its derivatives, as for `ShearFactor`; one of them knows the gradients."""
+        """Set the product of both factors and its derivatives, as for `ShearFactor`; at most one of them depends on
+        gradients."""
         other, other_h, other_v = np.empty_like(H), np.empty_like(H), np.empty_like(H)
         slopes = self.first.factor(H, vx, ratio_out, ratio_h_out, ratio_v_out)
         others = self.second.factor(H, vx, other, other_h, other_v)
@@ -187,19 +192,19 @@ class ShearProduct:
 
 
 class LinkLaw(FluxEffect, ShearFactor, Protocol):
-    """A law of the oil that changes what links carry and the shear.
+    """Law of the oil that changes the flows over links and the shear.
 
     Attributes
     ----------
     field : Fluidity or None
-        Viscosity over that of the film's scale, set by the bearing's model if it varies over the film.
+        Viscosity over the reference viscosity, set by the bearing's model if it varies over the film.
     """
 
     field: Fluidity | None = None
 
 
 def link_flux(gap_x: np.ndarray, effects: tuple[FluxEffect, ...]) -> LinkFlux:
-    """Buffers for these effects; ``gap_x`` (n, m) as in `LinkFlux`."""
+    """Return buffers for these effects; ``gap_x`` (n, m) as in `LinkFlux`."""
     carriers = any(effect.changes_carriers for effect in effects)
     speeds = any(effect.depends_on_speed for effect in effects)
     gap_z, gx, gx_h, gx_v, gz, gz_h, gz_v = np.zeros((7, *gap_x.shape))
@@ -210,7 +215,7 @@ def link_flux(gap_x: np.ndarray, effects: tuple[FluxEffect, ...]) -> LinkFlux:
 
 @njit(cache=True, fastmath=FAST)
 def plain_flux(H, HF, gap_z_out, gx, gx_h, gz, gz_h):
-    """The plain film's conductances with their derivatives, and the links' gap in z."""
+    """Set the conductances of a plain film with their derivatives, and the gap of the links in z."""
     n, m = H.shape
     for i in range(n):
         for j in range(m):
@@ -227,8 +232,8 @@ def plain_flux(H, HF, gap_z_out, gx, gx_h, gz, gz_h):
 def link_metric(grid: FilmGrid, flow_x: float) -> np.ndarray:
     """Metric (4, n, m) of the links, 0 where there is none.
 
-    Width over length of those in theta and in z, times the grid's cuts, and width for the Couette flows in theta and in
-    z. ``flow_x`` = 0 drops the circumferential pressure flow.
+    First width over length in theta and in z, times the grid's ``cuts``, then the width for the Couette flows in theta
+    and in z. ``flow_x`` = 0 drops the circumferential pressure flow.
     """
     along_z, across_z = np.append(grid.link_z, 0.0), np.append(np.ones(grid.link_z.size), 0.0)
     x = flow_x * grid.link_x, grid.width_x, grid.link_x != 0.0, grid.width_x
@@ -255,7 +260,7 @@ def _set_along(h_a, h_b, g, carrier, metric, width, v, k_out, f_out):
 
 @njit(cache=True)
 def set_links(H, HF, flow, metric, vx, vz, terms):
-    """Conductances and Couette flows of the links into ``terms``, the first four fields (n, m) of a `FilmTerms`.
+    """Set conductances and Couette flows of the links in ``terms``, the first four fields (n, m) of a `FilmTerms`.
 
     ``flow``: `LinkFlux.flow`, None for a plain film; ``metric``: `link_metric`.
     """
@@ -273,7 +278,7 @@ def set_links(H, HF, flow, metric, vx, vz, terms):
 
 @njit(cache=True, fastmath=FAST)
 def right_hand_side(fx, fz, squeeze, H_t, area, b_out):
-    """b = net Couette inflow of every control volume, with a ``squeeze`` less the storage ``dH/dt area``."""
+    """Set b: net Couette inflow of every control volume, less the storage ``dH/dt area`` if ``squeeze``."""
     n, m = fx.shape
     for i in range(n):
         p = i - 1 if i > 0 else n - 1
@@ -288,37 +293,38 @@ def right_hand_side(fx, fz, squeeze, H_t, area, b_out):
 
 
 @njit(cache=True, fastmath=FAST)
-def lacks(links, p, out):
-    """Write what the balances lack (n, m), ``b - A P`` for links (kx, kz, b): b less what pressure flows take away.
+def linear_residual(links, p, out):
+    """Set the residual ``b - A P`` (n, m) in ``out``, for links (kx, kz, b) and pressures p.
 
-    At fixed vertices it is minus the inflow that they supply.
+    At fixed vertices it is minus the flow that they feed into the film.
     """
     kx, kz, b = links[0].reshape(-1), links[1].reshape(-1), links[2].reshape(-1)
-    x, lack, m, size = p.reshape(-1), out.reshape(-1), unsigned(p.shape[1]), unsigned(p.size)
+    x, residual, m, size = p.reshape(-1), out.reshape(-1), unsigned(p.shape[1]), unsigned(p.size)
     last = size - m
     for c in range(m):
         # nothing flows over the last row's links
         before, far = (c if c > U0 else size) - U1, last + c
-        lack[c] = b[c] - kx[c] * (x[c] - x[c + m]) + kx[far] * (x[far] - x[c])
-        lack[c] += kz[before] * (x[before] - x[c]) - kz[c] * (x[c] - x[c + U1])
+        residual[c] = b[c] - kx[c] * (x[c] - x[c + m]) + kx[far] * (x[far] - x[c])
+        residual[c] += kz[before] * (x[before] - x[c]) - kz[c] * (x[c] - x[c + U1])
     for c in range(m, last):
         taken = kx[c] * (x[c] - x[c + m]) - kx[c - m] * (x[c - m] - x[c])
-        lack[c] = b[c] - taken - kz[c] * (x[c] - x[c + U1]) + kz[c - U1] * (x[c - U1] - x[c])
+        residual[c] = b[c] - taken - kz[c] * (x[c] - x[c + U1]) + kz[c - U1] * (x[c - U1] - x[c])
     for c in range(last, size):
         on, far = c + U1 if c + U1 < size else U0, c - last
-        lack[c] = b[c] - kx[c] * (x[c] - x[far]) + kx[c - m] * (x[c - m] - x[c])
-        lack[c] += kz[c - U1] * (x[c - U1] - x[c]) - kz[c] * (x[c] - x[on])
+        residual[c] = b[c] - kx[c] * (x[c] - x[far]) + kx[c - m] * (x[c - m] - x[c])
+        residual[c] += kz[c - U1] * (x[c - U1] - x[c]) - kz[c] * (x[c] - x[on])
 
 
-# Largest w; a half would be of second order to the last digit, and leave Fourier modes of short waves undamped.
+# Largest w. The value 0.5 would be of exactly second order, but would not damp short waves; smaller ones damp more and
+# are less accurate.
 LARGEST_LAG = 0.45
-# Share of a vertex's oil that leaves it at most by what was there at the start of a step.
+# Largest part of a vertex's content that ``late`` may carry away in a step; larger values allow negative fills.
 LARGEST_OUTFLOW = 0.5
 
 
 @njit(cache=True, inline="always")
 def _leaves(fx, fz, i, j):
-    """Couette flow of a full film out of a vertex."""
+    """Return the Couette flow of a full film out of a vertex."""
     n, m = fx.shape
     out = max(fx[i, j], 0.0) - min(fx[i - 1 if i > 0 else n - 1, j], 0.0)
     if j + 1 < m:
@@ -330,8 +336,8 @@ def _leaves(fx, fz, i, j):
 
 @njit(cache=True)
 def outflow_of(fx, fz, H, H_t, area, fill):
-    """Fields (3, n, m) that the next step needs: fill; rate of the gap over the gap, 1/s; share of a full film that its
-    Couette flows take along, 1/s."""
+    """Return fields (3, n, m) for the next step: fill; rate of the gap over the gap, 1/s; Couette outflow of a full
+    film over its volume, 1/s."""
     n, m = fill.shape
     out = np.empty((3, n, m))
     for i in range(n):
@@ -345,8 +351,8 @@ def outflow_of(fx, fz, H, H_t, area, fill):
 
 @njit(cache=True)
 def hold_back(fields, content, late):
-    """No lag where the flows of a film's terms (10, n, m) that have grown manifold since the last step would take more
-    than the ``content`` (n, m) that there was, over the step."""
+    """Set ``prompt`` to 1 and ``late`` to 0 where ``late`` would carry away more than the content at the start of the
+    step, since flows have grown; ``content`` (n, m): over the step, 1/s."""
     fx, fz, area, prompt = fields[2], fields[3], fields[7], fields[8]
     for i in range(late.shape[0]):
         for j in range(late.shape[1]):
@@ -356,7 +362,8 @@ def hold_back(fields, content, late):
 
 @njit(cache=True)
 def lag_void(outflow, step, fixed, prompt_out, late_out):
-    """``prompt = 1 - w`` and ``w late`` (n, m) of a step after `outflow_of`; where it was full, 1 and 0."""
+    """Set ``prompt = 1 - w`` and ``w late`` (n, m) of a step from the result of `outflow_of` at its start; 1 and 0 at
+    vertices that were full."""
     n, m = fixed.shape
     for i in range(n):
         for j in range(m):
@@ -370,7 +377,7 @@ def lag_void(outflow, step, fixed, prompt_out, late_out):
 
 
 def following(P: np.ndarray) -> np.ndarray:
-    """Values (2, n, m) of a field at the next vertex in theta and z; of the last row in z its own."""
+    """Return the values (2, n, m) of a field at the next vertex in theta and z; the last row in z keeps its own."""
     out = np.array((P, P))
     out[0, :-1], out[0, -1] = P[1:], P[0]
     out[1, :, :-1] = P[:, 1:]
@@ -378,19 +385,19 @@ def following(P: np.ndarray) -> np.ndarray:
 
 
 def on_links(P: np.ndarray) -> np.ndarray:
-    """Mean of both vertices on the links (2, n, m)."""
+    """Return the mean of a field at both ends of the links (2, n, m)."""
     return 0.5 * (P + following(P))
 
 
 def drops(P: np.ndarray) -> np.ndarray:
-    """Field P (n, m) less its value at the next vertex, on the links (2, n, m)."""
+    """Return the differences on the links (2, n, m): field P (n, m) less its value at the next vertex."""
     return P - following(P)
 
 
 def drop_weights(links: np.ndarray) -> np.ndarray:
-    """Weights of P (2, ..., n, m) in the sums of ``links`` times `drops` in theta and in z.
+    """Transpose of `drops`: weights of P (2, ..., n, m) in the sums of ``links`` times `drops`, in theta and in z.
 
-    Their sum over both is what leaves the vertices by flows on the links.
+    For flows on the links, the sum over both directions is the outflow of the vertices.
     """
     out, (x, z) = links.copy(), links
     out[0, ..., 1:, :] -= x[..., :-1, :]
@@ -400,7 +407,7 @@ def drop_weights(links: np.ndarray) -> np.ndarray:
 
 
 def to_ends(values: np.ndarray, axis: int) -> np.ndarray:
-    """Half of the values on the links along an axis at either of their ends: the transpose of the mean of both."""
+    """Transpose of the mean of both ends: half of the value of every link along an axis, added at each of its ends."""
     out = values.copy()
     ends, links = out.swapaxes(0, axis), values.swapaxes(0, axis)
     ends[1:] += links[:-1]

@@ -16,12 +16,13 @@ U/2 at both walls that gives
 
     k_x = n (2 + m) 2^-(1 + m) Re^(1 + m),    k_z = n 2^-(1 + m) Re^(1 + m),    t = n 2^-(3 + m) Re^(1 + m),
 
-with n = 0.066, m = -0.25: 0.0687 and 0.0392 Re^0.75. Where that is below the laminar 12 (1 for t), the film is laminar;
-the corner is rounded by 2 %.
+with n = 0.066, m = -0.25: k_x = 0.0687 Re^0.75 and k_z = 0.0392 Re^0.75. Where these are below the laminar 12 (1 for
+t), the film is laminar; the corner between both laws is rounded by 2 %.
 
-Between the Reynolds numbers ``onset`` and ``full`` what exceeds the laminar value fades in by ``w = s^3 (10 - 15 s + 6
-s^2)``, twice differentiable. Re counts the sliding of the journal in the bore alone, not axial motion, squeeze, or the
-pressure flow, which must be slow beside it; the carrier h of the Couette flow is unchanged by symmetry.
+Between the Reynolds numbers ``onset`` and ``full`` the excess over the laminar value is multiplied by ``w = s^3 (10 -
+15 s + 6 s^2)``, twice differentiable. Re contains only the sliding of the journal in the bore, not axial motion,
+squeeze, or the pressure flow, which must be slow in comparison. The carrier h of the Couette flow is unchanged by
+symmetry.
 """
 
 from __future__ import annotations
@@ -38,12 +39,13 @@ from numba import njit
 from exudyn_ehd.film.reynolds.links import LinkFlux, LinkLaw
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
 
-# Laws of an oil whose conductances or density follow the pressure.
+# Options of a `Lubricant` whose conductances or density follow the pressure; they exclude turbulence.
 FOLLOWING = ("pressure_law", "density_law", "shear_law")
-# Taylor number Re sqrt(c / R) at which vortices set in between concentric cylinders; G. I. Taylor, Phil. Trans. R. Soc.
-# A 223 (1923) 289.
+# Taylor number Re sqrt(c / R) above which there are vortices between concentric cylinders; larger values delay
+# turbulence. G. I. Taylor, Phil. Trans. R. Soc. A 223 (1923) 289.
 TAYLOR = 41.2
-# Of k / 12 where Hirs' law meets the laminar one.
+# Width, in units of k / 12, over which the corner between Hirs' law and the laminar law is rounded. The largest error
+# of k / 12 is half of it; smaller values make the corner sharper.
 ROUNDING = 0.04
 
 
@@ -52,8 +54,8 @@ class _Transition(Checked):
 
     onset: float | None
     full: float | None
-    # U h / nu at which turbulence lasts between planes that slide, 4 times the 360 by half the speed and half the gap;
-    # N. Tillmark and P. H. Alfredsson, J. Fluid Mech. 235 (1992) 89.
+    # U h / nu above which turbulence persists in plane Couette flow; larger values delay turbulence. It is 4 times the
+    # 360 with half speed and half gap of N. Tillmark and P. H. Alfredsson, J. Fluid Mech. 235 (1992) 89.
     plane_onset: ClassVar[float] = 1440.0
 
     checks: ClassVar = {
@@ -77,9 +79,9 @@ class _Transition(Checked):
         Parameters
         ----------
         radius, clearance : float
-            Of the journal, and radial, m.
+            Radius of the journal and radial clearance, m.
         plane : bool, default False
-            True: of a thrust face, whose sliding makes no vortices of Taylor's.
+            True: for a thrust face, in which there are no Taylor vortices.
 
         Returns
         -------
@@ -95,12 +97,14 @@ class _Transition(Checked):
     def bound(
         self, radius: float, clearance: float, density: float, viscosity: float, plane: bool = False
     ) -> TurbulentFlow:
-        """The law as flux effect and shear factor of a bearing of this radius and clearance, m; kg/m3 and Pa s."""
+        """Return the law as flux effect and shear factor of a bearing; radius and clearance in m, density in kg/m3,
+        viscosity in Pa s."""
         per_speed = 2.0 * density * radius * clearance / viscosity
         return TurbulentFlow(self._powers(), self.transition(radius, clearance, plane), per_speed)
 
     def _powers(self) -> np.ndarray:
-        """(3, 4) array for k_x / 12, k_z / 12 and t: factor, exponent, what is subtracted, and its rounding."""
+        """Coefficients (3, 4) of k_x / 12, k_z / 12 and t: factor, exponent, subtracted value, width of the rounded
+        corner."""
         raise NotImplementedError
 
 
@@ -186,7 +190,7 @@ class Hirs(_Transition):
 
 
 def check_turbulence(name: str, bearing: Mapping[str, object]) -> None:
-    """Refuse what has no turbulent form: properties by the pressure, and factors of a laminar profile."""
+    """Raise `InputError` for turbulence with properties that follow the pressure, or with models of laminar flow."""
     oil = bearing["lubricant"]
     others = [f"Lubricant.{law}" for law in FOLLOWING if getattr(oil, law) is not None]
     others += [] if bearing["roughness"] is None else ["JournalBearing.roughness"]
@@ -205,7 +209,7 @@ class TurbulentFlow(LinkLaw):
     Parameters
     ----------
     powers : (3, 4) array
-        See `NgPan`.
+        Coefficients of `NgPan` or `Hirs`, see ``_powers`` there.
     transition : (float, float)
         Reynolds numbers between which the film becomes turbulent.
     per_speed : float
@@ -224,7 +228,7 @@ class TurbulentFlow(LinkLaw):
         self.powers, self.transition, self.per_speed = powers, transition, per_speed
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
-        """Divide the links' conductances by k / 12 at their gaps (n, m), with derivatives."""
+        """Divide the conductances of the links by k / 12 at their gaps (n, m), with their derivatives."""
         one, f = np.ones((1, 1)), self.field
         x, z = (one, one) if f is None else (f.inverse_x, f.inverse_z)
         speed, (law_x, law_z, _) = (self.per_speed, vx), self.powers
@@ -234,7 +238,7 @@ class TurbulentFlow(LinkLaw):
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
     ) -> None:
-        """t at the gaps H (n, m) and its derivatives with respect to H and vx."""
+        """Set t at the gaps H (n, m), and its derivatives to H and vx."""
         fluid = np.ones((1, 1)) if self.field is None else 1.0 / self.field.ratio
         ratio_out[:] = 1.0
         ratio_h_out[:] = ratio_v_out[:] = 0.0

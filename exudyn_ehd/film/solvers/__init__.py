@@ -3,11 +3,11 @@
 Module map
 ----------
 film            arrays, links, oil and rupture line of one film; flows at prescribed vertices
-answers         its matrix, derivatives and flows
-solver          its solution from the gaps
-sets            which film is solved how, if neither gaps nor conductances follow its pressure; pseudo time
+answers         matrix, derivatives and flows of a solved film
+solver          solution of a film for given gaps
+sets            choice of the method if neither gaps nor conductances follow the pressure; pseudo-transient continuation
 newton          Newton's method for all films that are not linear
-matrix          its matrix, the factor and the steps
+matrix          Newton's matrix, its factor and steps
 liner           film on an elastic liner, or with conductances that follow the pressure
 impedance_map   fitted map for plain bearings
 sor             finite differences and successive over-relaxation

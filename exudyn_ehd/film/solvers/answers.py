@@ -1,4 +1,4 @@
-"""Answers of a solved film: pressure and viscosity by the oil's laws, factor, derivatives of its balances, and flows at
+"""Results of a solved film: pressure and viscosity by the oil's laws, factor, derivatives of its balances, and flows at
 prescribed vertices."""
 
 from __future__ import annotations
@@ -16,28 +16,29 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
-from exudyn_ehd.film.reynolds.links import ShearFactor, lacks
+from exudyn_ehd.film.reynolds.links import ShearFactor, linear_residual
 from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.line import AtLine, undeformed
 from exudyn_ehd.film.solvers.sets import factor_solution
 from exudyn_ehd.film.supply.restrictors import Reservoirs, add_border
 
-# Largest pressure behind the end of a law, in its largest ones. Solvers measure what they leave by the first force that
-# they meet, and one too large would let them take the next states for solutions. Force and tangent are reduced
-# alike, and so lead to where they would have led.
-FARTHEST = 10.0
+# Largest pressure over the largest one of the oil's law, if the solution lies beyond the end of the law. Larger values
+# give first forces so large that solvers, which measure residuals relative to them, accept wrong states. Force and
+# tangent are reduced by the same factor, so that Newton's step is unchanged.
+LARGEST_OVERSHOOT = 10.0
 
 
 class OilFields(NamedTuple):
-    """Pressure, and the viscosity ratio that shear sees; fields (n, m).
+    """Pressure, and viscosity ratio for the shear stress; fields (n, m).
 
     P : scaled pressure
     P_q : its derivative to the solver's unknown, the transformed pressure; None if they are the same
-    ratio : viscosity over the reference; None where that is one
+    ratio : viscosity over the reference; None if it is 1 everywhere
     ratio_q, ratio_h, ratio_v : derivatives to the unknown, H and vx; None where the ratio does not depend on it
-    ratio_g : (2, n, m), derivatives to the unknown's gradients along theta and z, of a film that thins
-    beyond : whether the pressure law ends before the solution somewhere; there it goes on in a line, and all is reduced
+    ratio_g : (2, n, m), derivatives to the unknown's gradients along theta and z, for a shear-thinning oil
+    beyond : whether pressures lie beyond the end of the pressure law, where it is continued by a straight line; all
+        fields are then reduced, see `LARGEST_OVERSHOOT`
     """
 
     P: np.ndarray
@@ -51,21 +52,21 @@ class OilFields(NamedTuple):
 
 
 class FilmAnswers(FilmArrays):
-    """Answers of a solved film with its matrix A; attributes as for `FilmSolver`.
+    """Results of a solved film with its matrix A; attributes as for `FilmSolver`.
 
-    With ``reservoirs`` A is the whole matrix of `exudyn_ehd.film.supply.restrictors`, and rows of unknowns or balances
-    (., count + k) have those of the areas behind those of the vertices.
+    With ``reservoirs``, A is the whole matrix of `exudyn_ehd.film.supply.restrictors`. Rows (., count + k) of unknowns
+    or balances then hold the count vertices first, followed by the k areas.
     """
 
     elements: LinerFilm | None
     reservoirs: Reservoirs | None = None
-    # of `fill_gradients`, once they are asked for
+    # cached result of `fill_gradients`
     _fills: tuple[Gradients, Gradients] | None = None
-    # of `reduced`: areas with a balance, B^T, C A^-1 and S
+    # cached result of `reduced`: areas with a balance, B^T, C A^-1 and S
     _reduced: tuple[np.ndarray, ...] | None = None
 
     def oil_fields(self, law: PressureTransform | None, shear: ShearFactor | None) -> OilFields | None:
-        """Pressure and viscosity ratio of the last solution; None where it has no pressure."""
+        """Pressure and viscosity ratio of the last solution; None if it lies beyond the range of a density law."""
         shape, scale = self.grid.shape, self.pressure_scale
         if law is None and shear is None:
             return OilFields(self.pressure)
@@ -79,9 +80,9 @@ class FilmAnswers(FilmArrays):
             if self.law is not None and self.law.viscosity is None and shear is None:
                 return None if beyond else OilFields(P, P_q)
         if beyond and law is not None:
-            share = min(1.0, FARTHEST * law.largest_pressure / (P.max() * scale))
+            reduction = min(1.0, LARGEST_OVERSHOOT * law.largest_pressure / (P.max() * scale))
             for field in (P, ratio) if P_q is ratio else (P, ratio, P_q):
-                field *= share
+                field *= reduction
         if shear is None:
             return OilFields(P, P_q, ratio, ratio_q, self.nothing, self.nothing, beyond)
         factor, ratio_h, ratio_v = np.empty((3, *shape))
@@ -96,11 +97,11 @@ class FilmAnswers(FilmArrays):
 
     def _density_at(self, p: np.ndarray, law: CompressibleLaw) -> np.ndarray:
         """Density ratio (n, m) at the pressures p, Pa, of the last solution."""
-        # pressures that were cut off inside the cells are others than those that the film was solved for
+        # with a line inside the cells, clipped pressures differ from those at which rho was computed
         return law.density.ratio(np.minimum(p, law.largest_pressure)) if self.closure.clips else self.rho
 
     def factor_solution(self) -> None:
-        """Make the factor in the workspace that of the last solution."""
+        """Refactor the matrix at the last solution, unless its factor is exact already."""
         if self.work.exact:
             return
         if self.elements is not None:
@@ -115,8 +116,8 @@ class FilmAnswers(FilmArrays):
         return self.work.count + (0 if self.reservoirs is None else int(self.reservoirs.live.sum()))
 
     def border(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Symbols of `exudyn_ehd.film.supply.restrictors`: B^T and C (k, count), D (k, k); p as the film's unknown,
-        Q scaled."""
+        """Return B^T and C (k, count), and D (k, k), symbols of `exudyn_ehd.film.supply.restrictors`, for p as unknown
+        of the film and scaled Q."""
         s, r, w = self.system, self.reservoirs, self.work
         assert r is not None
         self.factor_solution()
@@ -132,7 +133,7 @@ class FilmAnswers(FilmArrays):
         return B, C, D
 
     def _add_corners(self, thin: ShearThinning, E: np.ndarray, B: np.ndarray, C: np.ndarray, D: np.ndarray) -> None:
-        """Add to `border` of areas E (k, n, m) what flows over links follow the gradients across them."""
+        """Add to the results of `border` the flows that follow gradients across the links, for areas E (k, n, m)."""
         s, (_, across, *_), at, flat = self.system, thin.response(), self.work.order[: self.work.count], (len(E), -1)
         unknown = s.fixed | self.work.active if self.closure.conserves_mass else self.ones
         for q, k in enumerate((s.kx, s.kz)):
@@ -169,7 +170,7 @@ class FilmAnswers(FilmArrays):
         rhs[:, :count] = film - (rhs[:, count:] * r.weights()) @ C
 
     def _solve_film_transposed(self, rhs: np.ndarray) -> None:
-        """`solve_transposed` at given pressures of all areas."""
+        """Solve as `solve_transposed`, at given pressures of all areas."""
         w = self.work
         self.factor_solution()
         self._couple(rhs.T, True)
@@ -196,7 +197,7 @@ class FilmAnswers(FilmArrays):
         self._couple(rhs, False)
 
     def matrix(self) -> csc_matrix:
-        """A (count, count)."""
+        """Return the matrix A of the unknowns of vertices, and with reservoirs of areas."""
         self.factor_solution()
         w, count = self.work, self.work.count
         lower, upper = self._bands()
@@ -219,7 +220,8 @@ class FilmAnswers(FilmArrays):
         )
 
     def _couple(self, x: np.ndarray, transposed: bool) -> None:
-        """Couple rows (count, k) of the film's pressures and of those continued behind its line between columns."""
+        """Couple the rows (count, k) of the film's pressures and of those continued beyond a line between columns, see
+        `ColumnLine.couple`."""
         if self.system.column_line is not None:
             self.system.column_line.couple(self.work, x, transposed)
 
@@ -229,10 +231,10 @@ class FilmAnswers(FilmArrays):
         return dense_band(lower, w.count, w.width), dense_band(w.upper, w.count, w.width)
 
     def gradients(self, places: np.ndarray | None = None) -> Gradients:
-        """Derivatives of the balances at flat vertices, those of the unknowns without ``places``, for the last solution
-        at fixed unknowns.
+        """Derivatives of the balances to the motion at fixed unknowns, for the last solution.
 
-        To the film's gaps between rigid surfaces, to those of the undeformed surfaces on a liner.
+        The balances are those of the flat vertices ``places``; None: of the unknowns. With an elastic liner, gaps are
+        those of the undeformed surfaces.
         """
         at, storage = self.work.order[: self.work.count] if places is None else places, self.storage_weights()
         e, s, by = self.elements, self.system, np.empty((10, at.size))
@@ -250,8 +252,7 @@ class FilmAnswers(FilmArrays):
         return out if line is None else join(out, line)
 
     def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives (n, m) of every vertex's balance through the storage, with respect to the rate and to the gap of
-        the undeformed surfaces."""
+        """Derivatives (n, m) of the storage of every vertex to the rate and to the gap of the undeformed surfaces."""
         s, e = self.system, self.elements
         content = self.area if self.law is None else self.area * self.rho
         if self.closure.conserves_mass:
@@ -267,29 +268,30 @@ class FilmAnswers(FilmArrays):
         return content * e.gap_slopes.rate_t, content * e.gap_slopes.rate_r
 
     def surroundings(self) -> np.ndarray:
-        """Derivatives (count + k,) of the balances to the rates of the unknowns, through what the film's surroundings
-        store: a liner's deflection, and oil in supply areas with a restrictor."""
+        """Derivatives (count + k,) of the balances to the rates of the unknowns, through storage outside of the film:
+        by a liner's deflection, and of oil in supply areas with a restrictor."""
         stored, r = self.nothing, self.reservoirs
         if self.elements is not None:
             stored = self.storage_weights()[0] * self.elements.deflection_by_pressure
-        own = stored.reshape(-1)[self.work.order[: self.work.count]]
+        film_storage = stored.reshape(-1)[self.work.order[: self.work.count]]
         if r is None:
-            return own
+            return film_storage
         deflects = (r.sums(stored) * r.transformed()[1])[r.live] / self.pressure_scale
-        return np.append(own, r.storage() + r.weights() * deflects)
+        return np.append(film_storage, r.storage() + r.weights() * deflects)
 
     @property
     def pockets(self) -> np.ndarray | None:
-        """Pressures (k,) that supply areas with a restrictor remember, Pa; None without a compressible volume."""
+        """Pressures (k,) of supply areas with a restrictor, Pa, for the next step; None without a compressible
+        volume."""
         r = self.reservoirs
         return r.pressures.copy() if r is not None and r.compliance.any() else None
 
     def _at_line(self) -> AtLine:
-        """The film at its rupture line."""
+        """Return the film at the cavity pressure, for derivatives of the rupture line."""
         return AtLine((self.H, self.HF), self.flux, None) if self.elements is None else self.elements.at_line
 
     def _to_motion(self, line: Gradients) -> Gradients:
-        """Convert a line's gradients to the film's gaps, in place, to gradients to those of the undeformed surfaces."""
+        """Convert a line's derivatives to the film's gaps into those to gaps of the undeformed surfaces, in place."""
         if not self.axial:
             line.by[7] = 0.0
         return undeformed(line, self._at_line().chain)
@@ -297,8 +299,8 @@ class FilmAnswers(FilmArrays):
     def line_gradients(self, places: np.ndarray | None = None) -> Gradients | None:
         """Contribution of the rupture line inside the cells to the derivatives of the balances; None without one.
 
-        For the last solution, at fixed pressure. ``places``: flat vertices of balances in place of those of the
-        unknowns; only a mass-conserving film's line adds to those.
+        It holds for the last solution at fixed pressure. ``places``: flat vertices of balances, None: those of the
+        unknowns. With ``places``, only mass-conserving films have a contribution.
         """
         fills = self.fill_gradients()
         if fills is not None and self.oil_line is not None:
@@ -315,10 +317,10 @@ class FilmAnswers(FilmArrays):
         return self._to_motion(self.line.gradients(self.work, gaps, flux, v, self.flow_x, self.squeeze, self.grid.mesh))
 
     def fill_gradients(self) -> tuple[Gradients, Gradients] | None:
-        """Derivatives of what flows carry from vertices at a mass-conserving film's line inside its cells, and of their
-        fills; None without.
+        """Derivatives of two fills of the vertices at a line inside the cells of a mass-conserving film: fill of the
+        outflow, fill of the vertex; None without such a line.
 
-        For the last solution, at fixed pressure; ``rows`` are flat vertices.
+        They hold for the last solution at fixed pressure; ``rows`` are flat vertices.
         """
         if self.oil_line is None:
             return None
@@ -329,7 +331,7 @@ class FilmAnswers(FilmArrays):
         return self._fills
 
     def fill_weights(self) -> tuple[FilmTerms, np.ndarray]:
-        """Terms with the Couette flows of a full film, and its storage (n, m), of masses if compressible."""
+        """Terms with the Couette flows of a full film, and its storage (n, m); mass flows with a density law."""
         terms, rho = self.system.terms, self.rho
         if self.law is None:
             return terms, terms.area * terms.grow
@@ -339,8 +341,8 @@ class FilmAnswers(FilmArrays):
     def inflow(self, ended: bool = False, linear: bool = False) -> np.ndarray:
         """Scaled volume (or mass) flow that every prescribed vertex feeds into the film (n, m); zero elsewhere.
 
-        ``ended``: films next to a cavity end within a link. ``linear``: pressures that are cut off count as they were
-        before, beside vertices with the cavity pressure too.
+        ``ended``: whether films between supply areas and a cavity may end within a link, see `end_films_of_areas`.
+        ``linear``: whether the flows are those of the linear film, before pressures are clipped.
         """
         s, conserves_mass = self.system, self.closure.conserves_mass
         P = s.linear_pressure if linear else self.flow_pressures()[0]
@@ -349,7 +351,7 @@ class FilmAnswers(FilmArrays):
             fill, rho = s.fill if conserves_mass else None, None if self.law is None else self.rho
             film_balance(P, fill, rho, s.terms, balance)
         else:
-            lacks((s.kx, s.kz, s.b), P, balance)
+            linear_residual((s.kx, s.kz, s.b), P, balance)
             np.negative(balance, out=balance)
             if ended and self.complementary:
                 end_films_of_areas(s, self.work.active, self.grid, balance)

@@ -10,15 +10,16 @@ form of `exudyn_ehd.film.reynolds.links`. sigma is the mean density of a link's 
 its upstream end. The closures are unchanged in P, because q grows with p: `FullSommerfeld`, `Gumbel` (solved over
 the whole film, cut off afterwards; the density follows the clipped pressure), `SwiftStieber` and `ElrodAdams`.
 
-Storage. `ElrodAdams` with a history: the difference of the void, the gap less ``rho fill H``. Without a history
-there is no rate of the pressure: ``d(rho H)/dt = rho dH/dt``. What is left out, ``H d(rho)/dt``, is to the squeeze as
-the strain of the oil, dp / K with its bulk modulus K = 1 / a near 1.7 GPa, to that of the gap in the same time, dH / H:
-1 % for 10 MPa during which the gap changes by half. The rates at an instant (a history without a time step) leave it
-out likewise. A flooded start holds oil of ambient density, so that its film builds up the pressure over some steps.
+Storage. `ElrodAdams` with a history: difference of the void over the step, where the void is the gap less
+``rho fill H``. Without a history the rate of the pressure is omitted: ``d(rho H)/dt = rho dH/dt``. The omitted term
+``H d(rho)/dt``, over the squeeze, is the strain dp / K of the oil over that of the gap in the same time, dH / H. With a
+bulk modulus K = 1 / a near 1.7 GPa this is 1 % for 10 MPa while the gap changes by half. The rates at an instant (a
+history without a time step) omit it as well. A flooded start has oil of ambient density, so that its film builds up the
+pressure over some steps.
 
-Rupture lines lie inside the cells where the closure says so, with f and the pressure at s = 1 (symbols of
-`exudyn_ehd.film.cavitation.rupture_line` and `exudyn_ehd.film.cavitation.oil_line`) times the density of oil at the
-cavity's pressure. Oil that no pressure of the law's range carries has no film.
+With a rupture line inside the cells, f and the pressure at s = 1 are multiplied by the density of oil at the cavity
+pressure. For these symbols see `exudyn_ehd.film.cavitation.rupture_line` and `exudyn_ehd.film.cavitation.oil_line`. If
+the film needs pressures beyond the range of the density law, there is no solution.
 """
 
 from __future__ import annotations
@@ -52,8 +53,9 @@ from exudyn_ehd.film.supply.restrictors import seal_ends
 def flow_pressures(s: FilmSystem, active: np.ndarray, clips: bool) -> tuple[np.ndarray, np.ndarray]:
     """Pressures (n, m) whose differences drive the flows at prescribed vertices, and where the film is full.
 
-    Next to a prescribed pressure above the cavity's a film that is cut off has the linear film's gradient, up to a line
-    that may lie in front of the next vertex: that vertex counts with its linear pressure, and as full.
+    A film with clipped pressures (``clips``) has the gradient of the linear film next to a prescribed pressure above
+    the cavity's. Its rupture line may lie in front of the next vertex. This vertex therefore has its linear pressure
+    here, and counts as full.
     """
     if not clips:
         return s.linear_pressure, active
@@ -66,10 +68,10 @@ def flow_pressures(s: FilmSystem, active: np.ndarray, clips: bool) -> tuple[np.n
 
 
 def ends_of_cavities(s: FilmSystem, conserves_mass: bool) -> list[tuple[int, int, np.ndarray]]:
-    """Columns of the ends and of the vertices beside them, and where (n,) an end holds what the film beside it does.
+    """Rows of both ends, rows beside them, and where (n,) an end has the fill of the vertex beside it.
 
-    An end's half control volume is as empty as the cavity beside it, though its pressure is prescribed. Where a film
-    conserves mass under an end pressure above the cavity's, a full band lies along the end.
+    The half control volume of an end has the fill of a cavity beside it, though its pressure is prescribed. If the film
+    conserves mass and the end pressure is above the cavity's, a full band lies along the end instead.
     """
     m = s.fixed.shape[1]
     out = []
@@ -82,7 +84,7 @@ def ends_of_cavities(s: FilmSystem, conserves_mass: bool) -> list[tuple[int, int
 
 
 def shear_share(s: FilmSystem, active: np.ndarray, closure: Closure) -> np.ndarray:
-    """Share of a full film's shear that acts at each vertex (n, m)."""
+    """Shear at each vertex over that of a full film (n, m)."""
     out = np.empty(s.fixed.shape)
     _share(s.fill, active, s.fixed, s.pressure, s.cavity_pressure, closure.conserves_mass, closure.cavity_shear, out)
     return out
@@ -100,8 +102,8 @@ def _share(fill, active, fixed, P, pc, conserves, cavity_shear, out):
 
 
 def at_beside_ends(s: FilmSystem, field: np.ndarray) -> np.ndarray:
-    """A field (n, m) of the ends at the vertices beside them, where a film that conserves mass shares its fill with
-    them; 0 elsewhere."""
+    """Return a field with the values of ``field`` (n, m) at the ends moved to the vertices beside them, where the ends
+    have their fill (in a film that conserves mass); 0 elsewhere."""
     out = np.zeros(field.shape)
     _move_beside(field, s.fixed, s.pressure, s.cavity_pressure, out)
     return out
@@ -118,11 +120,12 @@ def _move_beside(field, fixed, P, pc, out):
 
 @njit(cache=True)
 def shear_by_unknown(weight, H, ratio, by_pressure, fill, rise, active, fixed, P, pc, out):
-    """Weights (n, m) of the unknowns of a film that conserves mass in its Couette shear, pressures where ``active``.
+    """Set derivatives (n, m) of a mass-conserving film's Couette shear to its unknowns: pressures where ``active``,
+    else fills.
 
-    ``weight``, ``ratio``, ``by_pressure``: of the shear, viscosity ratio that it sees, and this one's derivative to the
-    unknown; ``rise``: derivative of the fill to the pressure, at the line. Ends share the fill of the vertices beside
-    them.
+    ``weight``: integration weight of the shear; ``ratio``, ``by_pressure``: viscosity ratio for the shear and its
+    derivative to the unknown; ``rise``: derivative of the fill to the pressure, at the line. Ends have the fill of the
+    vertices beside them.
     """
     n, m = out.shape
     for i in range(n):
@@ -136,7 +139,7 @@ def shear_by_unknown(weight, H, ratio, by_pressure, fill, rise, active, fixed, P
 
 
 def end_films_of_areas(s: FilmSystem, active: np.ndarray, grid: FilmGrid, balance_out: np.ndarray) -> None:
-    """Let the films between supply areas and a cavity end where they do, in the balances (n, m)."""
+    """Correct the balances (n, m) of supply areas for films that end within the link to a cavity, see `_end_films`."""
     cuts = np.ones((2, *grid.shape)) if grid.cuts is None else grid.cuts
     widths = grid.width_x, grid.width_z
     _end_films((s.kx, s.kz), s.b, active, grid.fixed, cuts, widths, np.diff(grid.z), balance_out)
@@ -144,23 +147,24 @@ def end_films_of_areas(s: FilmSystem, active: np.ndarray, grid: FilmGrid, balanc
 
 @njit(cache=True)
 def _end_films(links, b, active, fixed, cuts, widths, length_z, balance_out):
-    """Let the film between a supply area and a cavity end where its parabola of pressure does.
+    """Correct the balances of supply areas: the film from an area into a cavity ends where its parabola of pressure
+    does.
 
-    What the turn carries away and the squeeze takes, B per length, leaves the area's edge up to the middle of the link,
-    where the control volumes meet, ``B (d - l / 2)`` with the link's length l and the distance d from the edge to the
-    cavity's first vertex. A film that begins with no more than the cavity's pressure ends at once and takes none of it;
-    one whose flow q takes the share of ``sqrt(2 q B l)`` in ``q + B l / 2``, up to the flow at which it reaches the
-    vertex, of what the vertex receives in all.
+    B is the flow per length that wedge and squeeze take away. The scheme takes ``B (d - l / 2)`` from the area for the
+    film from its edge to the middle of the link, where the control volumes meet. l is the length of the link, d the
+    distance from the edge to the first vertex of the cavity. A film that begins at the cavity pressure ends at once and
+    takes nothing. If the vertex receives the pressure flow q, the total flow from the area (for d = l) is
+    ``sqrt(2 q B l)`` in place of ``q + B l / 2``. This holds up to the q at which the film reaches the vertex.
 
     Parameters
     ----------
     links : conductances (n, m) in theta and z
     b, active, fixed : (n, m), right-hand side of the balances, vertices of the film and prescribed ones
-    cuts : (2, n, m), of the links in theta and z, see `exudyn_ehd.film.grid.FilmGrid`
+    cuts : (2, n, m), factors of the links in theta and z, see `exudyn_ehd.film.grid.FilmGrid`
     widths : control volumes' widths (n,) and (m,)
-    length_z : (m - 1,), of the links in z
+    length_z : (m - 1,), lengths of the links in z
     balance_out : (n, m)
-        Balances, at prescribed vertices what these feed, which is changed in place.
+        Balances, changed in place at prescribed vertices: the flows that these feed into the film.
     """
     n, m = b.shape
     for axis in range(2):
@@ -182,8 +186,8 @@ def _end_films(links, b, active, fixed, cuts, widths, length_z, balance_out):
                         balance_out[i, j] += b[u, v] / width * (d - 0.5 * length) * (1.0 - np.sqrt(received)) ** 2
 
 
-# Stands for a vanishing time step where only the rates at one instant are asked for, share of the time in which the
-# film changes.
+# Time step for the rates at an instant, over the time in which the film changes. Larger values change the rates,
+# smaller ones add round-off.
 INSTANT = 1e-7
 
 
@@ -196,7 +200,7 @@ class FilmArrays:
         As for `FilmSolver`.
     flow_x : float
         0 drops the circumferential pressure flow, else 1.
-    yields : bool
+    has_feedback : bool
         Whether gaps or conductances follow the pressure.
     """
 
@@ -208,7 +212,7 @@ class FilmArrays:
         squeeze: bool,
         flux_effects: tuple[FluxEffect, ...],
         density: CompressibleLaw | None,
-        yields: bool,
+        has_feedback: bool,
     ) -> None:
         shape = grid.shape
         self.grid, self.closure, self.squeeze, self.flux_effects = grid, closure, squeeze, flux_effects
@@ -216,17 +220,17 @@ class FilmArrays:
         self.ones, self.nothing, self.metric = np.ones(shape), np.zeros(shape), link_metric(grid, flow_x)
         self._whole = np.ones((2, grid.x.size * grid.z.size))
         self.vx = self.vz = 0.0
-        # whether oil flows in z; without links it does not, the flow by an axially moving surface included
+        # whether oil flows in z; without links in z it does not, even with an axially moving surface
         self.axial = bool(grid.link_z.any())
         self.lagging = False
-        # whether there is a cavity, and whether no unknown pressure is below the cavity's
+        # whether the closure ruptures, and whether it is a complementarity problem
         self.ruptures = bool(np.isfinite(closure.cavity_pressure))
         self.complementary = self.ruptures and not closure.clips
         ruptures = RUPTURE if self.ruptures else FULL
         self.system = s = FilmSystem(grid, OIL if closure.conserves_mass else CLIPPED if closure.clips else ruptures)
         self.take_gaps(s.H, s.HF, s.H_t)
         # whether the film's matrix is symmetric: factored as L D L^T, else as L U
-        self.symmetric = not (closure.conserves_mass or density is not None or yields)
+        self.symmetric = not (closure.conserves_mass or density is not None or has_feedback)
         self.line: RuptureLine | None = None
         self.oil_line: OilLine | None = None
         if closure.line_in_cells and closure.conserves_mass:
@@ -235,10 +239,10 @@ class FilmArrays:
             s.count_in_cells(grid, closure.clips)
         elif closure.line_in_cells:
             self.line = s.rupture if self.symmetric else FilmLine(s.rupture.block, shape)
-            s.line = None if yields else self.line
-        # density over that at ambient pressure (n, m), of the last solution, and at the last factor its derivative to
-        # the unknown pressures; without a law it does not follow the pressure
-        self.law, self.density = density, None if density is None or yields else DensityField(density, shape)
+            s.line = None if has_feedback else self.line
+        # density law; ratio rho of the last solution (n, m), and its derivative to the unknown pressures at the last
+        # factor; None, ones and None without a law
+        self.law, self.density = density, None if density is None or has_feedback else DensityField(density, shape)
         self.rho: np.ndarray = self.ones
         self.rho_P: np.ndarray | None = None
         if self.density is not None:
@@ -246,11 +250,11 @@ class FilmArrays:
             s.take_density(self.density)
         # Pa per unit of the scaled pressure
         self.pressure_scale = 1.0
-        # derivative of what `keep` returned to the gap
+        # derivative of the last result of `keep` to the gap
         self.follows = self.nothing
 
     def take_gaps(self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray) -> None:
-        """Let these arrays (n, m) hold the gaps at vertices and on links, and the rate of the gap."""
+        """Use these arrays (n, m) as gaps at vertices and on links, and as rate of the gap."""
         self.H, self.HF, self.H_t = H, HF, H_t
         self.system.H, self.system.HF, self.system.H_t = H, HF, H_t
         self.flux = link_flux(HF, self.flux_effects) if self.flux_effects else None
@@ -267,14 +271,14 @@ class FilmArrays:
 
     @property
     def carried(self) -> np.ndarray:
-        """Fill that the Couette flows of the last solution take along from every vertex (n, m)."""
+        """Fill of the Couette flows out of every vertex in the last solution (n, m)."""
         s = self.system
         if not self.closure.conserves_mass:
             return self.ones
         return s.prompt * s.fill + s.terms.late if self.lagging or self.oil_line is not None else s.fill
 
     def taken_along(self) -> np.ndarray:
-        """Fill times mean density (2, n m) that the Couette flows of the last solution take along from upstream."""
+        """Fill times mean density (2, n m) of the Couette flows on the links in the last solution."""
         if self.law is None and not self.closure.conserves_mass:
             return self._whole
         carried, rho = self.carried if self.closure.conserves_mass else None, None if self.law is None else self.rho
@@ -288,15 +292,15 @@ class FilmArrays:
         return content if self.law is None else self.rho * content
 
     def forget(self) -> None:
-        """Let the next solution start from a full film."""
+        """Make the next solution a cold start from a full film."""
         self.work.warm = False
 
     def cut_links(self) -> None:
-        """Take the grid's cuts over into the links' metric."""
+        """Update the metric of the links for the grid's ``cuts``."""
         self.metric[:] = link_metric(self.grid, self.flow_x)
 
     def set_links(self) -> None:
-        """Conductances and Couette fluxes of the links."""
+        """Set conductances and Couette fluxes of the links."""
         s, f = self.system, self.flux
         if f is not None:
             first, *others = self.flux_effects
@@ -308,38 +312,39 @@ class FilmArrays:
             seal_ends(self.grid, s.kz, self.pressure_scale)
 
     def set_right_hand_side(self) -> None:
-        """Net inflow of the links' Couette flows, less the squeeze."""
+        """Set the right-hand side: net inflow by the links' Couette flows, less the squeeze."""
         s = self.system
         right_hand_side(s.fx, s.fz, self.squeeze, self.H_t, self.area, s.b)
 
     def inverse_instant(self) -> float:
-        """1 / a step that stands for none, 1/s, for the speeds and rates now stored."""
+        """Return 1 / time step for the rates at an instant, 1/s, for the present speeds and rates, see `INSTANT`."""
         return (abs(self.vx) + abs(self.vz) + float(np.abs(self.H_t).max()) or 1.0) / INSTANT
 
     def set_times(self, mass_old: np.ndarray | None, step: float) -> None:
-        """Set the rate of the storage of a film that conserves mass, and what was stored at the start of the step."""
+        """Set the inverse time step and the start-of-step content of a film that conserves mass."""
         s = self.system
         if not self.closure.conserves_mass:
             return
-        s.see_motion(mass_old is None, self.H_t, self.vx, self.vz)
+        s.set_motion(mass_old is None, self.H_t, self.vx, self.vz)
         s.instant, s.inverse_step = mass_old is not None and step <= 0.0, 0.0
         if mass_old is not None:
             s.inverse_step = self.inverse_instant() if s.instant else 1.0 / step
             s.mass_old[:] = mass_old
 
     def stored(self, mass: np.ndarray | None, step: float) -> tuple[np.ndarray, np.ndarray]:
-        """Void at the end of the last solution's step, and the oil that flows have brought, ``mass`` at its start."""
+        """Return the void at the end of the last solution's step, and the sum of oil flows: ``mass`` at its start plus
+        the change of content in the step."""
         content = self.content
         known = mass is not None and step > 0.0
         return self.H - content, mass + content - self.system.mass_old if known else content
 
     def flooded(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return `stored` and `outflow` of a full film at the gaps now stored, from which nothing has flowed."""
+        """Return the results of `stored` and `outflow` for a full film at the present gaps, without flows so far."""
         return self.nothing, self.H.copy(), np.array([self.ones, self.nothing, self.nothing])
 
     def lag(self, outflow: np.ndarray | None, step: float) -> None:
-        """Let the next solution's flows out of cavities lag, by what `outflow` (3, n, m) was at the start of its
-        step; None, or a step of 0: they do not."""
+        """Average the next solution's flows out of cavities over its step, from ``outflow`` (3, n, m) at its start;
+        None, or a step of 0: no average."""
         s = self.system
         if outflow is not None and step > 0.0:
             lag_void(outflow, step, s.fixed, s.prompt, s.late)
@@ -349,22 +354,22 @@ class FilmArrays:
             self.lagging = False
 
     def hold_back(self) -> None:
-        """Let no flow lag that would take more than there was at the start of the step, for the links now stored."""
+        """Do not average flows that would carry away more than the start-of-step content, for the present links."""
         if self.lagging:
             hold_back(self.system.fields, self.system.inverse_step * self.system.mass_old, self.system.late)
 
     def outflow(self) -> np.ndarray:
         """Fields (3, n, m) of the last solution that `exudyn_ehd.film.reynolds.links` needs in the next step.
 
-        Flows from the line inside its cells follow the pressure, whatever a vertex holds: it counts as full.
+        A vertex at a line inside the cells counts as full, since the flows out of it follow its pressure, not its fill.
         """
         s, line = self.system, self.oil_line
         fill = s.fill if line is None else np.where(line.s < 1.0, 1.0, s.fill)
         return outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, fill)
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m); of
-        masses if compressible."""
+        """Couette flows of the links in theta and z, and rate of a full film's content per area, all (n, m); mass flows
+        with a density law."""
         if self.law is None:
             return self.system.fx, self.system.fz, self.H_t
         fill, rho = self.carried, self.rho

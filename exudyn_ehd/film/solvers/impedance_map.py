@@ -5,17 +5,17 @@ For an aligned journal at e = (x, y) with the spin omega, the right side of the 
     omega / 2 dh/dtheta + dh/dt = -V . n,   V = (dx/dt + omega y / 2, dy/dt - omega x / 2),   n =
     (cos theta, sin theta):
 
-seen from a frame that turns with half the spin every motion is a pure squeeze with the velocity V (J. F. Booker, J.
+in a frame that rotates with half the spin every motion is a pure squeeze with the velocity V (J. F. Booker, J.
 Basic Engineering 87 (1965) 537; D. Childs, H. Moes, H. van Leeuwen, J. Lubrication Technology 99 (1977) 198). With p =
-0 at the ends and in the cavity the pressure is homogeneous of first degree in V and does not know the housing's
+0 at the ends and in the cavity the pressure is homogeneous of first degree in V and independent of the housing's
 orientation, so that
 
     F = -(L D mu / psi^2) |V| / c  exp(m) (cos(phi_V + sign g), sin(phi_V + sign g)),   phi_V = angle of V,
 
-with two functions m, g of the eccentricity ratio eps and of the angle alpha in 0 .. pi between e and V; sign is that of
-the turn from e to V. They are smooth where the force itself changes by four orders of magnitude: the logarithm of the
-size and the deviation from the direction of V, over s = -ln(1 - eps), in which the size grows like a power of the gap.
-The error is thus relative to the force at that very state, also where the film nearly unloads (alpha above 90 degrees).
+with two functions m, g of the eccentricity ratio eps and of the angle alpha in 0 .. pi between e and V; sign is the
+sense of rotation from e to V. m is the logarithm of the force, g the angle between force and -V. Over
+s = -ln(1 - eps) both are smooth, while the force itself changes by four orders of magnitude. The error is thus relative
+to the force at the same state, also where the film nearly unloads (alpha above 90 degrees).
 
 m and g are bicubic Hermite functions on a uniform (s, alpha) grid with spline slopes (C1; the symmetries at alpha = 0,
 pi and at eps = 0 hold exactly), so that their derivatives are exact.
@@ -41,7 +41,8 @@ from exudyn_ehd.status import Checked, FilmError, Status, require_count, require
 from exudyn_ehd.storage import cached_arrays
 
 FORMAT = 3
-# Below this eccentricity ratio the direction of e is that of V; forces change by as much.
+# Eccentricity ratio below which the direction of e is set to that of V. The relative error of the force is about this
+# number; smaller values cause round-off in the direction.
 SMALLEST_ECCENTRICITY = 1e-9
 
 
@@ -115,7 +116,7 @@ def places(film: ImpedanceMap) -> tuple[np.ndarray, np.ndarray]:
 
 
 def build_nodes(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> np.ndarray:
-    """Solve the film at the nodes, and fit."""
+    """Solve the film at the nodes, and fit the map; returns the nodes of `_fit`."""
     grid = bearing_grid(1.0, length_to_radius, film.n_theta, film.n_z, stretch=film.stretch)
     solver, (s, alpha) = FilmSolver(grid, closure), places(film)
     f = np.empty((s.size, alpha.size, 2))
@@ -166,7 +167,7 @@ def _fit(s: np.ndarray, alpha: np.ndarray, m: np.ndarray, g: np.ndarray) -> np.n
 
 @njit(cache=True)
 def interpolate(nodes, step_s, step_alpha, s, alpha, out):
-    """m, dm/ds, dm/dalpha, g, dg/ds, dg/dalpha -> out (6,); bicubic Hermite, exact derivatives."""
+    """Set m, dm/ds, dm/dalpha, g, dg/ds, dg/dalpha in out (6,) by bicubic Hermite functions with exact derivatives."""
     i = min(max(int(s / step_s), 0), nodes.shape[0] - 2)
     j = min(max(int(alpha / step_alpha), 0), nodes.shape[1] - 2)
     t = s / step_s - i
@@ -217,8 +218,8 @@ def impedance_force(nodes, step_s, step_alpha, x, y, x_t, y_t, omega, force_out,
     size = np.exp(out[0])
     c, s = np.cos(sign * out[3]), np.sin(sign * out[3])
     fx, fy = -size * (vx * c - vy * s), -size * (vy * c + vx * s)
-    # Directions of the derivatives: dx, dy, then the velocities that follow. Without any, the force vanishes
-    # wherever the journal is, and only the velocity that a turned surface lends to a shifted journal counts.
+    # Directions of the derivatives: dx, dy, and the changes of V. At rest the force is zero at every position, so
+    # that only changes of V count.
     shift = 0.0 if at_rest else 1.0
     directions = (
         (shift, 0.0, 0.0, -0.5 * omega),
@@ -283,7 +284,7 @@ def impedance_wrench(nodes, p, motion, wrench_out, tangent_out):
 
 
 def impedance_nodes(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> np.ndarray:
-    """Nodes of the map from the disk, or built and stored there; see `exudyn_ehd.storage`."""
+    """Load the nodes of the map from the disk, or build and store them; see `exudyn_ehd.storage`."""
     condition = type(closure).__name__ + " in cells" * bool(closure.line_in_cells)
     key = FORMAT, film, condition, length_to_radius
     data = cached_arrays("impedance_maps", key, lambda: {"nodes": build_nodes(film, closure, length_to_radius)})

@@ -1,7 +1,7 @@
 """Newton's matrix of a film, its factor and its steps; arguments as for `exudyn_ehd.film.solvers.newton`.
 
-Where pressures alone are unknown, and neither gaps nor density nor conductances follow them, the matrix is symmetric,
-the line's derivatives included: L D L^T takes two thirds of the time of L U.
+The matrix is symmetric, derivatives of the rupture line included, if pressures are the only unknowns, and if neither
+gaps nor density nor conductances follow them. L D L^T then takes two thirds of the time of L U.
 """
 
 from __future__ import annotations
@@ -13,53 +13,54 @@ from exudyn_ehd.film.banded.factors import assemble_band, factor_band, factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
 from exudyn_ehd.film.banded.substitution import solve_ldl_one, solve_lu_one
 from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_of
-from exudyn_ehd.film.cavitation.states import RUPTURE, add_sink
+from exudyn_ehd.film.cavitation.states import RUPTURE, add_sink_slopes
 from exudyn_ehd.film.lubricant.density import density_slope_at
 from exudyn_ehd.film.reynolds.balance import film_slopes, oil_links, terms_of
 from exudyn_ehd.film.solvers.liner.elements import Rates, add_gap_slopes, load_of, slopes_of
 from exudyn_ehd.film.solvers.liner.winkler import find_slopes
 
-# Smallest range of pressures, over the scaled speed (the pressure scale of a gap of one clearance). A smaller range is
-# round-off of a centred journal, and counts as this.
-LEAST_PRESSURE = 1e-6
+# Smallest difference between largest and smallest pressure, over the scaled speed (the pressure scale of a gap of one
+# clearance). Smaller differences are round-off of a centred journal, and are replaced by this one. Larger values reuse
+# a factor more often.
+SMALLEST_RANGE = 1e-6
 
 
 @njit(cache=True)
-def _where_filled(fill, sets):
-    """Return the full vertices of a film that conserves mass; else None."""
+def _full_vertices(fill, sets):
+    """Return ``sets``, the full or prescribed vertices, of a film that conserves mass; None without ``fill``."""
     if fill is None:
         return None
     return sets
 
 
 @njit(cache=True)
-def _add_edge(fill, curve, terms, rho, slopes):
+def _add_line_slopes(fill, curve, terms, rho, slopes):
     if fill is None:
-        add_sink(curve, slopes)
+        add_sink_slopes(curve, slopes)
     else:
         add_curve(curve, terms, rho, slopes)
 
 
 @njit(cache=True, nogil=True)
-def factor_film(kind, P, oil, density, film, yielding, thin, matrix, full, size):
-    """Set and factor Newton's matrix of a film; returns (ok, count, width).
+def factor_film(kind, P, oil, density, film, feedback, thin, matrix, full, size):
+    """Assemble and factor Newton's matrix of a film; returns (ok, number of unknowns, half-bandwidth).
 
-    ``kind``: that of `exudyn_ehd.film.cavitation.states`; P and ``full``: pressures and active set (n, m); ``size``:
-    (whether the unknowns have their numbers, their count, width).
+    ``kind``: kind of film of `exudyn_ehd.film.cavitation.states`; P and ``full``: pressures and active set (n, m);
+    ``size``: (whether the unknowns are numbered already, their number, half-bandwidth).
     """
-    return _factor(matrix[2], kind, P, oil, density, film, yielding, thin, matrix, full, size)
+    return _factor(matrix[2], kind, P, oil, density, film, feedback, thin, matrix, full, size)
 
 
 @njit(cache=True)
-def _factor(lower, kind, P, oil, density, film, yielding, thin, matrix, full, size):
+def _factor(lower, kind, P, oil, density, film, feedback, thin, matrix, full, size):
     if lower is None:
         return factor_symmetric(film, matrix, full, size)
-    return _factor_any(kind, P, oil, density, film, yielding, thin, matrix, full, size)
+    return _factor_any(kind, P, oil, density, film, feedback, thin, matrix, full, size)
 
 
 @njit(cache=True)
 def factor_symmetric(film, matrix, full, size):
-    """`factor_film` where pressures alone are unknown, and neither gaps nor density nor conductances follow them."""
+    """Assemble and factor a symmetric matrix, see the module; parameters and results as for `factor_film`."""
     (order, number, _, upper, inv_diag, _, _), (numbered, count, width) = matrix, size
     kx, kz, k, s = film[0][0], film[0][1], film[3][1], film[3][6]
     if not numbered:
@@ -73,28 +74,28 @@ def factor_symmetric(film, matrix, full, size):
 
 
 @njit(cache=True)
-def _factor_any(kind, P, oil, density, film, yielding, thin, matrix, full, size):
+def _factor_any(kind, P, oil, density, film, feedback, thin, matrix, full, size):
     (fill, rho, rho_P), terms, (numbered, count, width) = oil, terms_of(film[0], film[1]), size
-    order, number, lower, upper, inv_diag, slopes, steep = matrix
+    order, number, lower, upper, inv_diag, slopes, relative_slopes = matrix
     if density is not None:
         scale, floor, law, known, _ = density
         density_slope_at(P, scale, floor, law, known, rho_P)
-    # Couette flows couple where pressure flow is dropped
+    # Couette flows couple columns also where the pressure flow between them is dropped
     coupled, free, sets = oil_links(terms, full)
-    filled, unknown = _where_filled(fill, sets), full if kind == RUPTURE else free
+    filled, unknown = _full_vertices(fill, sets), full if kind == RUPTURE else free
     film_slopes(fill, filled, rho, rho_P, terms, slopes)
     if thin is not None:
         add_tangents(thin[0], terms.kx, terms.kz, filled, slopes)
-    if yielding is not None:
-        elements, links = yielding
+    if feedback is not None:
+        elements, links = feedback
         gap_slopes, gaps, load, rates, beta, by, _, _, _ = elements
         find_slopes(P, fill, rho, film, elements, links)
         at = slopes_of(gap_slopes), load_of(load), Rates(*rates)
         add_gap_slopes(P, fill, filled, rho, terms, *at, beta, by, slopes)
-        slight = LEAST_PRESSURE * (abs(links[2]) + abs(links[3]))
-        steep[:] = 0.0 if thin is None else 1.0 / max(P.max() - P.min(), slight, 1e-300)
-        _steepen(gap_slopes[0], gaps[0], rho_P, steep)
-    _add_edge(fill, curve_of(film[3]), terms, rho, slopes)
+        smallest_range = SMALLEST_RANGE * (abs(links[2]) + abs(links[3]))
+        relative_slopes[:] = 0.0 if thin is None else 1.0 / max(P.max() - P.min(), smallest_range, 1e-300)
+        _raise_relative_slopes(gap_slopes[0], gaps[0], rho_P, relative_slopes)
+    _add_line_slopes(fill, curve_of(film[3]), terms, rho, slopes)
     if not numbered:
         if thin is None:
             count, width = number_cells(unknown, coupled, order, number)
@@ -108,19 +109,19 @@ def _factor_any(kind, P, oil, density, film, yielding, thin, matrix, full, size)
 
 
 @njit(cache=True)
-def _steepen(yields, gap, rho_P, steep_out):
-    steep, by, height = steep_out.reshape(-1), yields.reshape(-1), gap.reshape(-1)
-    for c in range(steep.size):
-        steep[c] = max(steep[c], by[c] / height[c])
+def _raise_relative_slopes(gap_by_pressure, gap, rho_P, relative_slopes_out):
+    relative_slopes, by, height = relative_slopes_out.reshape(-1), gap_by_pressure.reshape(-1), gap.reshape(-1)
+    for c in range(relative_slopes.size):
+        relative_slopes[c] = max(relative_slopes[c], by[c] / height[c])
     if rho_P is not None:
-        denser = rho_P.reshape(-1)
-        for c in range(steep.size):
-            steep[c] = max(steep[c], denser[c])
+        by_density = rho_P.reshape(-1)
+        for c in range(relative_slopes.size):
+            relative_slopes[c] = max(relative_slopes[c], by_density[c])
 
 
 @njit(cache=True)
 def solve_step(lower, upper, inv_diag, count, width, x):
-    """Solve for Newton's step x (count,) in place; ``upper``: its dense band."""
+    """Solve for Newton's step x (count,) in place; ``upper``: dense band of the upper factor."""
     if lower is None:
         solve_ldl_one(upper, inv_diag, count, width, x)
     else:

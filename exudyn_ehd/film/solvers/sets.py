@@ -1,10 +1,10 @@
-"""Solution of a film whose gaps and conductances do not follow its pressure, by the method that its closure takes.
+"""Solution of a film whose gaps and conductances do not follow its pressure, by the method that its closure requires.
 
-A film that does not rupture, or is cut off afterwards, is linear. All others have Newton's method of
-`exudyn_ehd.film.solvers.newton`.
+At constant density, a film that does not rupture, or whose pressures are clipped afterwards, is linear. All others are
+solved by Newton's method of `exudyn_ehd.film.solvers.newton`.
 
-Pseudo-transient continuation for a film that Newton's method does not find from its initial guess: an additional
-storage at every vertex slows the film down and is reduced step by step; the last solution has none.
+If Newton's method fails from the initial guess, pseudo-transient continuation follows. An additional storage at every
+vertex slows the film down and is reduced step by step; the last solution has none.
 """
 
 from __future__ import annotations
@@ -24,62 +24,65 @@ from exudyn_ehd.film.solvers.newton import solve_film, solve_rupturing
 from exudyn_ehd.status import Status
 
 MOST_STEPS = 200
-# Rates of the storage over that of the film: of the first one, of one above which the continuation ends, of one below
-# which the film without storage is tried, and of one below which it is not tried again.
-FIRST, HOPELESS, LAST, LEAST = 100.0, 1e6, 1e-3, 1e-7
-# Factors of the storage after a film that is found, and after one that is not.
-FADES, GROWS = 0.3, 8.0
-# Share of its compressibility with which an oil counts as nearly incompressible.
-SOFTEST = 1e-9
+# Rates of the additional storage, over the rate of the film: first rate; rate above which the continuation fails; rate
+# below which the film without additional storage is tried; rate below which its failure ends the continuation. A larger
+# first rate, or smaller last ones, are more robust and cost more steps.
+FIRST_RATE, LARGEST_RATE, TRIAL_RATE, SMALLEST_RATE = 100.0, 1e6, 1e-3, 1e-7
+# Factors on the storage's rate after a film that is solved, and after a failure. A smaller first one risks failures, a
+# larger one costs steps.
+RATE_REDUCTION, RATE_GROWTH = 0.3, 8.0
+# Factor on an oil's compressibility that makes it nearly incompressible. Larger values leave a nonlinear film, smaller
+# ones approach round-off.
+SMALLEST_COMPRESSIBILITY = 1e-9
 
 
 def pseudo_time(attempt: Callable[[float], tuple[bool, int]], rate: float) -> tuple[bool, int]:
-    """Find a film by pseudo-transient continuation; returns (found, Newton steps).
+    """Solve a film by pseudo-transient continuation; returns (found, Newton steps).
 
     Parameters
     ----------
     attempt : function of a rate, 1/s
-        Solves with a storage of that rate, 0 for the film itself, and keeps a film that is found as the start of the
-        next; returns (found, Newton steps).
+        Solves with an additional storage of that rate, 0: none; returns (found, Newton steps). A solved film is the
+        initial guess of the next call.
     rate : float
         Rate of the film itself, 1/s, > 0.
     """
-    extra, total = FIRST * rate, 0
+    extra, total = FIRST_RATE * rate, 0
     for _ in range(MOST_STEPS):
         ok, steps = attempt(extra)
         total += steps
         if not ok:
-            extra *= GROWS
-            if extra > HOPELESS * rate:
+            extra *= RATE_GROWTH
+            if extra > LARGEST_RATE * rate:
                 return False, total
             continue
-        extra *= FADES
-        if extra < LAST * rate:
+        extra *= RATE_REDUCTION
+        if extra < TRIAL_RATE * rate:
             ok, steps = attempt(0.0)
             total += steps
             if ok:
                 return True, total
-            if extra < LEAST * rate:
+            if extra < SMALLEST_RATE * rate:
                 return False, total
     return False, total
 
 
 def recover(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Find a film that Newton's method does not find from a full one; returns (status, Newton steps).
+    """Solve a film for which Newton's method fails from a full film; returns (status, Newton steps).
 
-    Where the density follows the pressure, Newton's method starts from the film of a nearly incompressible oil. If it
-    fails and pressures reach the end of the law's range, the status is NO_PRESSURE. A film that is still not found is
-    followed in pseudo time.
+    Where the density follows the pressure, Newton's method starts again from the film of a nearly incompressible oil.
+    If it fails and pressures reach the end of the law's range, the status is NO_PRESSURE. In all other cases of failure
+    pseudo-transient continuation follows.
     """
     density, steps = s.density, 0
     if density is not None:
         work.warm = False
-        scale, density.scale = density.scale, SOFTEST * density.scale
+        scale, density.scale = density.scale, SMALLEST_COMPRESSIBILITY * density.scale
         ok, steps = solve_system(s, work)
         density.scale = scale
         beyond = ok and density.is_exhausted(s.linear_pressure)
         for crosses in (True, False) if ok else ():
-            # the iteration oscillates about the end of the law, unless its steps stop there
+            # first let steps cross the end of the law, then end them there, as the iteration may oscillate about it
             work.warm, density.crosses = True, crosses
             ok, count = solve_system(s, work)
             steps += count
@@ -88,13 +91,15 @@ def recover(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
         density.crosses = False
         if ok or beyond or density.is_exhausted(s.linear_pressure):
             return (Status.CONVERGED if ok else Status.NO_PRESSURE), steps
-    status, count = follow(s, work)
+    status, count = solve_in_pseudo_time(s, work)
     return status, steps + count
 
 
-def follow(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Follow a film in pseudo time from a full one; returns (status, Newton steps). The status is NO_OIL if rows run
-    dry on the way."""
+def solve_in_pseudo_time(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
+    """Solve a film by pseudo-transient continuation from a full film; returns (status, Newton steps).
+
+    If it fails, the status is NO_OIL for a film without rates in which a row has run dry.
+    """
     largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
     largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - s.base), initial=0.0))
     rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
@@ -123,12 +128,12 @@ def follow(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
 
 
 def _states_of(s: FilmSystem, work: Workspace) -> tuple[np.ndarray | None, ...]:
-    """Argument ``state`` of `solve_film`."""
+    """Return the argument ``state`` of `solve_film`."""
     return work.u, work.above, s.fill if s.kind == OIL else None
 
 
 def solve_system(s: FilmSystem, work: Workspace) -> tuple[bool, int]:
-    """Solve by Newton's method, from the last film if ``work.warm``, else from a full one: (found, steps)."""
+    """Solve by Newton's method, from the last film if ``work.warm``, else from a full film; returns (found, steps)."""
     P = s.linear_pressure
     s.terms.late[:] = s.late
     ok, steps = work.take_end(
@@ -145,15 +150,15 @@ def solve_system(s: FilmSystem, work: Workspace) -> tuple[bool, int]:
 
 
 def factor_solution(s: FilmSystem, work: Workspace) -> None:
-    """Make the factor in the workspace that of the last solution, of a film that is not linear."""
-    oil, density, film, yielding, matrix = _film_of(s, work)
+    """Refactor Newton's matrix at the last solution of a film that is not linear."""
+    oil, density, film, feedback, matrix = _film_of(s, work)
     full = work.active if s.kind >= RUPTURE else ~s.fixed
-    rest = oil, density, film, yielding, None, matrix, full, (False, work.count, work.width)
+    rest = oil, density, film, feedback, None, matrix, full, (False, work.count, work.width)
     _, work.count, work.width = factor_film(s.kind, s.linear_pressure, *rest)
 
 
 def _film_of(s: FilmSystem, work: Workspace) -> tuple[object, ...]:
-    """Arguments from ``oil`` to ``matrix`` of `solve_film`."""
+    """Return the arguments from ``oil`` to ``matrix`` of `solve_film`."""
     fill, rho = s.fill if s.kind == OIL else None, s.density
     oil = (fill, None, None) if rho is None else (fill, rho.rho, rho.rho_P)
     matrix = work.symmetric if s.kind != OIL and rho is None else work.matrix
@@ -161,8 +166,8 @@ def _film_of(s: FilmSystem, work: Workspace) -> tuple[object, ...]:
 
 
 def solve_sets(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Find a film whose coefficients do not follow its pressure, from the last one if ``work.warm``, else from a full
-    one; returns (status, linear solves)."""
+    """Solve a film whose gaps and conductances do not follow its pressure, from the last film if ``work.warm``, else
+    from a full film; returns (status, linear solves)."""
     s = system
     if s.kind == OIL or s.density is not None:
         outcome = _solve_by_newton(s, work)
@@ -188,21 +193,22 @@ def _solve_linear(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
 
 
 def _solve_rupturing(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Solve a film of Swift and Stieber, and continue it behind a line between its columns."""
+    """Solve a film of Swift and Stieber; continue its pressures beyond a rupture line between columns, if there is
+    one."""
     pc, places = s.cavity_pressure, (s.pressure, work.residual, work.unknowns, None)
     rest = work.active, _states_of(s, work), s.film, work.symmetric, places
     ok, steps = work.take_end(*solve_rupturing(work.size, pc, s.line is not None, work.warm, s.H_t, *rest))
     work.warm = ok
     if s.column_line is not None:
-        # the factor has rows of more unknowns, and serves no other film
+        # the factor has additional rows and cannot be reused for chord steps
         size, work.ready, work.exact = (work.count, work.width), False, ok
         work.count = extend_film(s.column_line, s.b, (s.fixed, work.active), pc, work.symmetric, size, s.pressure)
     return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
 
 
 def _solve_by_newton(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
-    """Solve a film that conserves mass or whose density follows the pressure, by Newton's method; where that does not
-    find it from a full film, by `recover`."""
+    """Solve a film that conserves mass or has a density law by Newton's method; if it fails from a full film, by
+    `recover`."""
     was_warm, status = work.warm, Status.CONVERGED
     store_content(s.fields, s.H, s.H_t, s.inverse_step, s.mass_old, s.instant)
     ok, steps = solve_system(s, work)

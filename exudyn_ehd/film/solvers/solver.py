@@ -1,7 +1,7 @@
 """Solver of one film on one grid: pressure and fill from the gaps.
 
-A film whose gaps or conductances follow its pressure has `LinerFilm` as a part, which solves by Newton's method. All
-other films are linear in their sets, which `exudyn_ehd.film.cavitation` finds.
+A film whose gaps or conductances follow its pressure has a `LinerFilm`, which solves it by Newton's method. All other
+films are solved by `exudyn_ehd.film.solvers.sets`.
 """
 
 from __future__ import annotations
@@ -25,18 +25,19 @@ from exudyn_ehd.film.solvers.sets import solve_sets
 from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.status import Status
 
-# Trials of Newton's method for the pressures of reservoirs.
-MOST_BALANCES = 40
-# Largest balance of a reservoir over its terms: round-off, and what counts as round-off where it does not fall further.
-# The first also of a step of Newton's method, over the peak pressure.
-EVEN, ROUNDED = 1e-13, 1e-9
+# Largest number of trials of Newton's method for the pressures of reservoirs.
+MOST_TRIALS = 40
+# Largest balance of a reservoir over the size of its terms: tolerance, also for a step of the pressures over the peak
+# pressure; and balance that is accepted as round-off if a trial no longer halves it. Larger values reduce the accuracy,
+# smaller ones prevent convergence.
+BALANCE_TOLERANCE, ROUND_OFF_BALANCE = 1e-13, 1e-9
 
 
 class FilmSolver(FilmAnswers):
-    """Solves the film for gaps that the caller writes into ``H``, ``HF`` and ``H_t``.
+    """Solver of a film for gaps that the caller writes into ``H``, ``HF`` and ``H_t``.
 
-    On a liner the caller writes gaps and rate of the undeformed surfaces; ``solve`` replaces them by those that the
-    film sees.
+    With an elastic liner the caller writes gaps and rate of the undeformed surfaces; ``solve`` replaces them by those
+    of the film.
 
     Parameters
     ----------
@@ -46,10 +47,10 @@ class FilmSolver(FilmAnswers):
     circumferential_pressure_flow : bool
         False drops the pressure flow in theta (short bearing).
     squeeze : bool
-        False leaves the storage term out; ``H_t`` is then never read.
+        False omits the storage term; ``H_t`` is then never read.
     flux_effects : tuple of FluxEffect
-        What changes conductances and carriers; empty: the plain film. An oil that thins by shear has conductances that
-        follow the pressure.
+        Effects on conductances and carriers; empty: plain film. The conductances of a shear-thinning oil follow the
+        pressure.
     density : CompressibleLaw or None
         Law of a compressible film, whose flows are mass flows over the density at ambient pressure.
     liner : Liner or None
@@ -66,7 +67,7 @@ class FilmSolver(FilmAnswers):
     rho : (n, m) array
         Density over that at ambient pressure, of the last solution.
     elements : LinerFilm or None
-        What lets gaps or conductances follow the pressure; None if they don't.
+        Film whose gaps or conductances follow the pressure; None if neither does.
     """
 
     def __init__(
@@ -80,13 +81,15 @@ class FilmSolver(FilmAnswers):
         density: CompressibleLaw | None = None,
         liner: Liner | None = None,
     ) -> None:
-        yields = liner is not None or any(isinstance(effect, ShearThinning) for effect in flux_effects)
-        super().__init__(grid, closure, float(circumferential_pressure_flow), squeeze, flux_effects, density, yields)
+        has_feedback = liner is not None or any(isinstance(effect, ShearThinning) for effect in flux_effects)
+        super().__init__(
+            grid, closure, float(circumferential_pressure_flow), squeeze, flux_effects, density, has_feedback
+        )
         self.is_rigid = liner is None
-        self.elements = LinerFilm(self, liner or Liner(oil=density)) if yields else None
+        self.elements = LinerFilm(self, liner or Liner(oil=density)) if has_feedback else None
 
     def refresh_fixed(self) -> None:
-        """Hand a change of ``grid.fixed`` and of its cuts on to the film's parts."""
+        """Update the film after a change of ``grid.fixed`` and ``grid.cuts``."""
         self.cut_links()
         if self.reservoirs is not None:
             self.reservoirs.place()
@@ -104,7 +107,7 @@ class FilmSolver(FilmAnswers):
         cavity_pressure : float
             Scaled cavity pressure, 1/s.
         mass_old : (n, m) array, optional
-            Old value of fill H, or of rho fill H, for closures that conserve mass; None: a steady film.
+            Start-of-step value of fill H, or of rho fill H, for closures that conserve mass; None: a steady film.
         step : float
             Time since ``mass_old``, s; 0 asks for the rates at that instant.
 
@@ -129,60 +132,69 @@ class FilmSolver(FilmAnswers):
         outflow: np.ndarray | None,
         step: float,
     ) -> tuple[Status, int]:
-        """`solve` over a step at whose start the film had a ``void`` and an `outflow`; None: a steady film."""
+        """Solve as `solve` over a step, for ``void`` and ``outflow`` at its start, see `stored` and
+        `FilmArrays.outflow`; None: a steady film."""
         kept = None if void is None else self.keep(void, step)
         self.lag(outflow, step)
         status, count = self.solve(vx, vz, cavity_pressure, kept, step)
         if status is Status.NOT_CONVERGED and self.lagging:
-            # flows that grow manifold within a step may take more than there was
+            # flows that have grown much within a step may carry away more oil than there was at its start
             self.lag(None, step)
             status, count = self.solve(vx, vz, cavity_pressure, kept, step)
         return status, count
 
     def _balance(self, r: Reservoirs, solve: Callable[[], tuple[Status, int]], floor: float) -> tuple[Status, int]:
-        """Solve the film with its reservoirs by Newton's method in their pressures, none below ``floor``, Pa.
+        """Solve the film and the pressures of its reservoirs by Newton's method; no pressure is below ``floor``, Pa.
 
-        Steps are halved where the largest balance grows. An unbroken film of constant properties is linear in the
-        pressures: it is solved once, and superposed.
+        A step is halved if the largest balance grows. An unbroken film of constant properties is linear in the
+        pressures of the reservoirs: it is solved once, then updated by superposition.
         """
-        base, change, least, steps = r.pressures, np.zeros(len(r.masks)), np.inf, 0
-        weights, known, stride = base, base, np.inf
+        base, change, smallest_error, steps = r.pressures, np.zeros(len(r.masks)), np.inf, 0
+        weights, known, largest_change = base, base, np.inf
         gaps = None if self.is_rigid else np.array((self.H, self.HF, self.H_t))
-        for _ in range(MOST_BALANCES):
+        for _ in range(MOST_TRIALS):
             r.pressures, error = np.maximum(base + change, floor), np.inf
             known, before = r.transformed()[0] / self.pressure_scale, known
-            if least == np.inf or not self._superpose(r, known - before):
+            if smallest_error == np.inf or not self._superpose(r, known - before):
                 self.pressure.reshape(-1)[r.at] = known[r.of_vertices]
-                if gaps is not None:  # a film on a liner leaves deformed ones
+                if gaps is not None:  # a solution with a liner has replaced them by gaps of deformed surfaces
                     self.H[:], self.HF[:], self.H_t[:] = gaps
                 status, count = solve()
                 steps += count
             if status is Status.CONVERGED:
                 g = r.balance(self.inflow(linear=True), floor)
-                weights = 1.0 / r.size if least == np.inf else weights
-                error, left = (float(np.max(np.abs(g) * w[r.live], initial=0.0)) for w in (weights, 1.0 / r.size))
-                rounded = stride <= EVEN * self.pressure_scale * float(np.abs(self.pressure).max())
-                if left <= EVEN or ((left <= ROUNDED or rounded) and error > 0.5 * least):
+                weights = 1.0 / r.size if smallest_error == np.inf else weights
+                error, relative_balance = (
+                    float(np.max(np.abs(g) * w[r.live], initial=0.0)) for w in (weights, 1.0 / r.size)
+                )
+                at_round_off = largest_change <= BALANCE_TOLERANCE * self.pressure_scale * float(
+                    np.abs(self.pressure).max()
+                )
+                if relative_balance <= BALANCE_TOLERANCE or (
+                    (relative_balance <= ROUND_OFF_BALANCE or at_round_off) and error > 0.5 * smallest_error
+                ):
                     return status, steps
-            if error < least:
-                base, change, least = r.pressures, r.change(self.reduced()[2], floor), error
-                stride = float(np.abs(change).max())
-            elif least < np.inf:
+            if error < smallest_error:
+                base, change, smallest_error = r.pressures, r.change(self.reduced()[2], floor), error
+                largest_change = float(np.abs(change).max())
+            elif smallest_error < np.inf:
                 change = 0.5 * change
             else:
                 return status, steps
         return Status.NOT_CONVERGED, steps
 
     def _superpose(self, r: Reservoirs, change: np.ndarray) -> bool:
-        """Change an unbroken film of constant properties with the areas' scaled pressures (k,), if it stays unbroken;
-        False for other films."""
+        """Update an unbroken film of constant properties for a change (k,) of the areas' scaled pressures.
+
+        Returns False, without an update, for other films and for a film that would not stay unbroken.
+        """
         s, w, fixed, reduced = self.system, self.work, self.grid.fixed, self._reduced
         follows = self.elements is not None or self.density is not None or s.column_line is not None
         if reduced is None or follows or not np.all(w.active | fixed) or np.any(change[~reduced[0]]):
             return False
         P, at = s.linear_pressure.reshape(-1), w.order[: w.count]
         new = P[at] - change[reduced[0]] @ reduced[2]
-        # below this pressure above the cavity's a vertex has a rupture line beside it
+        # pressure above the cavity's below which the rupture line lies beside a vertex
         whole = self.nothing.reshape(-1) if self.oil_line is None else self.oil_line.fields.whole
         whole = whole if self.line is None else self.line.whole
         if self.ruptures and (np.minimum(P[at], new) - whole[at]).min() < s.cavity_pressure:
@@ -194,7 +206,7 @@ class FilmSolver(FilmAnswers):
     def _solve_film(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None, step: float
     ) -> tuple[Status, int]:
-        """`solve` at given pressures of all areas."""
+        """Solve as `solve`, at given pressures of all areas."""
         s = self.system
         self.vx, self.vz, s.cavity_pressure, self._fills = vx, vz if self.axial else 0.0, cavity_pressure, None
         self._reduced = None
@@ -204,10 +216,10 @@ class FilmSolver(FilmAnswers):
             or (vx != 0.0 and np.ptp(self.H, axis=0).any())
             or (self.vz != 0.0 and np.ptp(self.H, axis=1).any())
         ):
-            # a film without a wedge and without squeeze makes a cold start, not one from the remains of the last film
+            # without wedge and squeeze the last film is no good initial guess: cold start
             self.forget()
         if self.elements is not None:
-            return self._solve_yielding(self.elements, mass_old, step)
+            return self._solve_with_feedback(self.elements, mass_old, step)
         return self._solve_sets(mass_old, step)
 
     def _solve_sets(self, mass_old: np.ndarray | None, step: float) -> tuple[Status, int]:
@@ -216,8 +228,7 @@ class FilmSolver(FilmAnswers):
         if self.density is not None:
             self.density.scale = self.pressure_scale
             if mass_old is not None and step <= 0.0:
-                # What an instant keeps is the volume: a full film follows the gap
-                # with the density that its pressure gives it.
+                # rates at an instant keep the volume: a full film follows the gap at the density of its pressure
                 mass_old = np.minimum(mass_old / self.density.at(s.cavity_pressure), self.H)
         self.set_links()
         self.set_right_hand_side()
@@ -230,19 +241,19 @@ class FilmSolver(FilmAnswers):
         self.hold_back()
         if s.instant:
             s.mass_old *= 1.0 - self.H_t / (s.inverse_step * self.H)
-        # where gaps close, cavities of another film may stay dry that fill up from a full one
+        # where gaps close, a warm start may leave cavities dry that a cold start from a full film fills
         warm = self.work.warm = self.work.warm and not s.closes
         status, steps = solve_sets(s, self.work)
-        # beyond the law's range the density stays what it is at its end, which makes other films
+        # beyond its range the law has a constant density, which gives other films
         beyond = self.density is not None and self.density.is_exhausted(s.linear_pressure)
         if warm and (beyond or status is Status.NOT_CONVERGED):
-            # a start from another state can mislead where the film itself is benign
+            # a warm start can fail where a cold start converges
             self.forget()
             status, more = solve_sets(s, self.work)
             steps += more
         return status_of(s, status), steps
 
-    def _solve_yielding(self, e: LinerFilm, mass_old: np.ndarray | None, step: float) -> tuple[Status, int]:
+    def _solve_with_feedback(self, e: LinerFilm, mass_old: np.ndarray | None, step: float) -> tuple[Status, int]:
         """Solve a film whose gaps or conductances follow its pressure."""
         work, s = self.work, self.system
         e.take_rigid()
@@ -253,7 +264,7 @@ class FilmSolver(FilmAnswers):
         work.warm = work.warm and not s.closes
         if not e.set_known_loads():
             return Status.NO_PRESSURE, 0
-        e.see_cavity()
+        e.set_line_terms()
         if not e.ends_open():
             work.warm = False
             return Status.NO_FILM, 0
@@ -270,12 +281,13 @@ class FilmSolver(FilmAnswers):
             return failure(e), steps
         e.finish()
         if e.limiter is not None and e.contact is None and not e.true_gap.min() > 0.0:
-            # the limiter keeps the film open although nothing holds the surfaces apart
+            # the limiter keeps the film's gap open although the surfaces overlap and no contact separates them
             return Status.NO_FILM, steps
         return status_of(s, Status.CONVERGED), steps
 
     def _solve_from_sliding(self, e: LinerFilm, mass_old: np.ndarray | None, step: float) -> tuple[bool, int]:
-        """Solve by Newton's method from the film between rigid surfaces in which the sliding alone thins the oil."""
+        """Solve by Newton's method; initial guess: film with the viscosity of pure sliding, without pressure
+        gradients."""
         e.forget_gradients()
         self.work.warm = False
         status, steps = self._solve_sets(mass_old, step)
@@ -283,30 +295,33 @@ class FilmSolver(FilmAnswers):
         if status is not Status.CONVERGED:
             return False, steps
         self.work.warm, self.work.ready = True, False
-        e.see_cavity()
+        e.set_line_terms()
         ok, more = e.solve()
         return ok, steps + more
 
     def keep(self, void: np.ndarray, step: float) -> np.ndarray:
-        """Content (n, m) at the start of a step, for the gaps and rates now stored: ``mass_old`` of `solve`.
+        """Return the oil content ``kept`` (n, m) at the start of a step, for the present gaps and rates: ``mass_old``
+        of `solve`.
 
-        ``void`` (n, m): gap minus oil at that time. The gap at that time is not the old one: it is extrapolated back
-        with the present rate. The storage of a vertex is then
+        ``void`` (n, m): gap minus oil at the start of the step. The gap there is not taken from the last step, but
+        extrapolated back with the present rate: ``kept = H - h dH/dt - void_old``. The storage of a vertex is then
 
-            (fill H - kept) / h = dH/dt - (void - void_old) / h,
+            (fill H - kept) / h = dH/dt - (void - void_old) / h.
 
-        a difference of the void (its flows: `lag`), while a full film is squeezed by its rate as under closures without
-        a memory. The difference quotient of the gap would be the mean of the rates at both ends of a step under
-        Newmark's formulas: rates that alternate from step to step would not act on it and would not be damped. The
-        difference of ``kept`` from the old content, ``H - h dH/dt - H_old``, is the same for full and for cavitated
-        vertices. Summed over the steps it is the difference between integrated rates and gap: with rates that follow
-        the gap it telescopes to ``-h (dH/dt at the end - at the start) / 2``, bounded over any number of steps and
-        vanishing with h.
+        Only the void enters by a difference over the step (for its flows see `lag`). A full film is squeezed by the
+        rate dH/dt, as for closures without a history. With Newmark's formulas the difference quotient of the gap would
+        be the mean of the rates at both ends of the step. Rates that alternate from step to step would then cause no
+        squeeze, and would not be damped.
+
+        ``kept`` differs from the old content by ``H - h dH/dt - H_old``, for full and for cavitated vertices. Summed
+        over the steps this is the difference between integrated rates and gap. With rates that are consistent with the
+        gap the sum is ``-h (dH/dt at the end - at the start) / 2``: bounded over any number of steps, and vanishing
+        with h.
         """
         before, slope = self.H - step * self.H_t, self.ones
         if self.elements is not None:
             slope = self.elements.deform(before)
         kept = before - void
-        # a gap that opens faster leaves nothing
+        # where the gap opens so fast that the extrapolated content is negative, it is 0 and does not follow the gap
         self.follows = slope * (kept > 0.0)
         return np.maximum(kept, 0.0, out=kept)

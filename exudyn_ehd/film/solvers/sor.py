@@ -7,7 +7,7 @@ In scaled form (lengths over R, H = h/c, P = p c^2 / (12 mu R^2)) Eq. (8) reads
 with central differences on a uniform grid (second order, not conservative), solved by successive over-relaxation in
 place until sum |P_new - P_old| <= tolerance sum |P_new|, rule (11); then negative pressures are cut off (Gümbel).
 
-Misprints of the paper, mended here:
+Misprints of the paper, corrected here:
 
 * (9), (10): the coefficient of p(i+1, j) carries + 3 h^2 (h(i+1, j) - h(i-1, j)); printed with a minus, as that of
   p(i-1, j);
@@ -18,8 +18,9 @@ Misprints of the paper, mended here:
 * (5): the middle form needs phi = theta - beta + pi; (6): the angle needs both signs (atan2). Both are avoided here by
   using the last form of (5).
 
-The paper does not print its relaxation factor. Rule (11) stops while the true error is still larger than the tolerance
-by the number of sweeps it takes to reduce it; it can be measured against `FiniteLength` or a smaller tolerance.
+The paper does not give its relaxation factor. When rule (11) stops, the true error is larger than the tolerance, about
+by the number of sweeps that reduce it by a factor of e. Compare with `FiniteLength` or a smaller tolerance to measure
+it.
 """
 
 from __future__ import annotations
@@ -101,7 +102,7 @@ def best_relaxation(n_z: int, step_x: float, step_z: float) -> float:
 
 
 class ClassicSolver(FilmSolver):
-    """`FilmSolver` with the pressure from `ClassicSOR`; flows through the edges are those of the conservative links.
+    """Film solver with the pressure of `ClassicSOR`; flows through the edges are those of the conservative links.
 
     Parameters
     ----------
@@ -168,9 +169,9 @@ class ClassicSolver(FilmSolver):
 def difference_operators(
     shape: tuple[int, int], step_x: float, step_z: float
 ) -> tuple[csr_matrix, csr_matrix, csr_matrix]:
-    """Central differences on a ring of n columns and m rows: slopes in theta and z, and sum of the second ones.
+    """Central differences on a ring of n columns and m rows: slopes in theta and z, and sum of both second differences.
 
-    They hold in the rows between both ends.
+    They are valid in the rows between both ends.
     """
     n, m = shape
     on_x, on_z = (
@@ -179,29 +180,34 @@ def difference_operators(
     )
     slope_x = kron((on_x - on_x.T) / (2.0 * step_x), eye_array(m))
     slope_z = kron(eye_array(n), (on_z - on_z.T) / (2.0 * step_z))
-    bend_x = kron((on_x + on_x.T - 2.0 * eye_array(n)) / step_x**2, eye_array(m))
-    bend_z = kron(eye_array(n), (on_z + on_z.T - 2.0 * eye_array(m)) / step_z**2)
-    return csr_matrix(slope_x), csr_matrix(slope_z), csr_matrix(bend_x + bend_z)
+    second_x = kron((on_x + on_x.T - 2.0 * eye_array(n)) / step_x**2, eye_array(m))
+    second_z = kron(eye_array(n), (on_z + on_z.T - 2.0 * eye_array(m)) / step_z**2)
+    return csr_matrix(slope_x), csr_matrix(slope_z), csr_matrix(second_x + second_z)
 
 
 def coefficients(
     H: np.ndarray, H_t: np.ndarray, squeeze: bool, speeds: tuple[float, float], steps: tuple[float, float]
 ) -> np.ndarray:
-    """Coefficients (n, m, 5) of Eq. (10): those of the pressures before and behind a vertex in theta and in z, and the
-    source, over that of its own pressure; for the rows between both ends."""
+    """Coefficients (n, m, 5) of Eq. (10), valid in the rows between both ends: of the pressures before and behind a
+    vertex in theta, of those in z, and the source; all over the coefficient of the vertex's own pressure."""
     (vx, vz), (dx, dz) = speeds, steps
     x, z = (np.roll(H, -1, axis) - np.roll(H, 1, axis) for axis in (0, 1))
-    cube, lean_x, lean_z = H**3, 0.75 * H * H * x, 0.75 * H * H * z
+    cube, slope_x_term, slope_z_term = H**3, 0.75 * H * H * x, 0.75 * H * H * z
     source = 0.5 * (vx * x / dx + vz * z / dz) + (H_t if squeeze else 0.0)
-    around = (cube - lean_x) / dx**2, (cube + lean_x) / dx**2, (cube - lean_z) / dz**2, (cube + lean_z) / dz**2
+    around = (
+        (cube - slope_x_term) / dx**2,
+        (cube + slope_x_term) / dx**2,
+        (cube - slope_z_term) / dz**2,
+        (cube + slope_z_term) / dz**2,
+    )
     return np.stack((*around, source), axis=-1) / (-2.0 * cube * (1.0 / dx**2 + 1.0 / dz**2))[..., None]
 
 
 @njit(cache=True)
 def sor_solve(a, fixed, relaxation, tolerance, largest_sweeps, P):
-    """SOR in place with `coefficients`; P (n, m) holds the prescribed values at fixed vertices.
+    """Solve by SOR with `coefficients`, in place; P (n, m) holds the prescribed values at fixed vertices.
 
-    Returns the sweeps, negative if not converged.
+    Returns the number of sweeps, negative if not converged.
     """
     n, m = P.shape
     for sweep in range(1, largest_sweeps + 1):

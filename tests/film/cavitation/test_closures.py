@@ -8,7 +8,7 @@ import pytest
 from exudyn_ehd import FullSommerfeld, Gumbel, InputError, Status, SwiftStieber, bearing_grid
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
-from exudyn_ehd.film.cavitation.rupture_line import straight
+from exudyn_ehd.film.cavitation.rupture_line import fields_without_line
 from exudyn_ehd.film.solvers.newton import solve_rupturing
 from exudyn_ehd.film.solvers.solver import FilmSolver
 
@@ -129,7 +129,10 @@ def test_clip_pressure_twin():
 def test_a_singular_start_is_reported():
     w, shape = Workspace(8, 4), (8, 4)
     fixed, zero, active = np.zeros(shape, dtype=bool), np.zeros(shape), np.ones(shape, dtype=bool)
-    film, places = (np.zeros((15, *shape)), fixed, zero, straight(shape)), (zero.copy(), w.residual, w.unknowns, None)
+    film, places = (
+        (np.zeros((15, *shape)), fixed, zero, fields_without_line(shape)),
+        (zero.copy(), w.residual, w.unknowns, None),
+    )
     state = w.u, w.above, None
     found, *_ = solve_rupturing(w.size, 0.0, False, False, zero, active, state, film, w.symmetric, places)
     assert not found

@@ -2,8 +2,8 @@
 
 Module map
 ----------
-elements      their kernels: pressure on them, deflection, gaps, derivatives
-winkler       the elements of one film: loads, contact, gaps, mass balances
+elements      kernels of Winkler elements: pressure on them, deflection, gaps, derivatives
+winkler       elements of one film: loads, contact, gaps, mass balances
 film          film on the elements: links, mass balances, derivatives, dry guess, continuation
 line          rupture line inside the cells
 """

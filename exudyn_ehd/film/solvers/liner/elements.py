@@ -1,10 +1,10 @@
-"""Winkler elements of an elastic liner: pressure on them, deflection, the gap that the film sees, and derivatives.
+"""Winkler elements of an elastic liner: pressure on them, deflection, gap of the film, and derivatives.
 
 The equations are in `exudyn_ehd.film.solvers.liner.film`. Symbols, all scaled: P unknown of the film; p pressure on the
 elements, P itself or p(P) of an oil whose viscosity or density follows its pressure; pc cavity pressure in P; beta
-compliance; G true gap; H gap that the film sees, HF that on the links i -> i+1; D deflection; E = H - (film gap of the
-undeformed surfaces). ``_P``, ``_r``: derivatives to the unknown pressure and to the undeformed gap. ``rigid``
-(3, n, m): gap, gap on links and rate of the undeformed surfaces.
+compliance; G true gap; H gap of the film (film gap), after a limiter; HF film gap on the links i -> i+1; D deflection;
+E = H - (film gap of the undeformed surfaces). ``_P``, ``_r``: derivatives to the unknown pressure and to the undeformed
+gap. ``rigid`` (3, n, m): gap, gap on links and rate of the undeformed surfaces.
 """
 
 from __future__ import annotations
@@ -19,8 +19,10 @@ from exudyn_ehd.film.reynolds.balance import flat
 
 
 class Gaps(NamedTuple):
-    """Gaps of a film and its deflection, (n, m) each: H, HF, D and E of the module; ``rate`` is dH/dt, without the
-    deflection's rate while a mass-conserving film is solved, whose storage contains it."""
+    """Gaps and deflection of a film, (n, m) each: H, HF, D and E of the module, and ``rate``, dH/dt.
+
+    While a mass-conserving film is solved, ``rate`` omits the rate of the deflection, which its storage contains.
+    """
 
     H: np.ndarray
     HF: np.ndarray
@@ -34,10 +36,10 @@ class GapSlopes(NamedTuple):
 
     Attributes
     ----------
-    H_P, D_P : of H and D to the unknown pressure
-    D_r, E_r, H_r : of D, E and H to the undeformed gap at fixed unknown
-    link : of HF to the true gap on the link
-    rate_P, rate_r, rate_t : of dH/dt to the unknown, the undeformed gap and the undeformed rate
+    H_P, D_P : derivatives of H and D to the unknown pressure
+    D_r, E_r, H_r : derivatives of D, E and H to the undeformed gap at fixed unknown
+    link : derivative of HF to the true gap on the link
+    rate_P, rate_r, rate_t : derivatives of dH/dt to the unknown, the undeformed gap and the undeformed rate
     """
 
     H_P: np.ndarray
@@ -56,7 +58,7 @@ class Load(NamedTuple):
 
     Attributes
     ----------
-    drive : unknown P, at least pc at free vertices if the closure clips
+    drive : unknown P, raised to pc at free vertices where it is lower, if the closure clips
     p, slope, bend : pressure at ``drive`` with its first two derivatives to the unknown;
         ``drive``, 1 and 0 for an oil of constant viscosity
     """
@@ -67,8 +69,8 @@ class Load(NamedTuple):
     bend: np.ndarray
 
 
-# Kernels that are called from Python take these as one array, (fields, n, m):
-# handing over a tuple of arrays takes as long as the computation.
+# Kernels that are called from Python take these fields as one array, (fields, n, m): passing a tuple of arrays would
+# take as long as the computation.
 
 
 @njit(cache=True)
@@ -91,17 +93,19 @@ def load_of(f):
 
 class Rates(NamedTuple):
     """Inverse time steps of the storage, 1/s, 0 if absent: of the mass, of the liner's deflection, of pseudo time.
-    ``own`` is 1 if the gap's own rate takes part, else 0."""
+
+    ``gap_rate`` is 1 if the storage contains the rate of the gap, else 0.
+    """
 
     mass: float
     liner: float
     pseudo: float
-    own: float
+    gap_rate: float
 
 
 @njit(cache=True, fastmath=FAST)
 def drive_elements(P, fixed, pc, clips, load_fields):
-    """Set ``drive`` of `Load`, and p as for an oil of constant viscosity."""
+    """Set ``drive`` of `Load`, and p to its value for an oil of constant viscosity."""
     load = load_of(load_fields)
     x, prescribed, drive, p = P.reshape(-1), fixed.reshape(-1), load.drive.reshape(-1), load.p.reshape(-1)
     for c in range(x.size):
@@ -149,7 +153,8 @@ def move_elements(rigid, G, delta_old, inverse, gap_fields):
 def set_storage(gaps, load, P, fills, known, rates, beta, film):
     """Set E of the elements, and the storage of the vertices: ``grow`` and ``kept`` of `balance.FilmTerms`.
 
-    ``known`` (3, n, m): film gap of the undeformed surfaces, old mass, and old quantity that pseudo time stores.
+    ``known`` (3, n, m): film gap of the undeformed surfaces, start-of-step mass, and quantity that pseudo time stores
+    at the start of its step.
     """
     H, E, rate, undeformed = gaps.H.reshape(-1), gaps.E.reshape(-1), gaps.rate.reshape(-1), known[0].reshape(-1)
     grow, kept, old, slow = film.grow.reshape(-1), film.kept.reshape(-1), known[1].reshape(-1), known[2].reshape(-1)
@@ -158,7 +163,7 @@ def set_storage(gaps, load, P, fills, known, rates, beta, film):
     for c in range(E.size):
         E[c] = H[c] - undeformed[c]
         if fills:
-            grow[c] = H[c] * pull + rate[c] * rates.own
+            grow[c] = H[c] * pull + rate[c] * rates.gap_rate
             kept[c] = -old[c] * rates.mass - slow[c] * rates.pseudo
         else:
             grow[c] = rate[c]
@@ -167,7 +172,7 @@ def set_storage(gaps, load, P, fills, known, rates, beta, film):
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
 def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, slope_fields):
-    """Set `GapSlopes`, but ``rate_t`` (slope of the film gap) and ``link``, which are inputs.
+    """Set `GapSlopes`, except ``rate_t`` (slope of the film gap) and ``link``, which are inputs.
 
     ``contact_G``: d(contact pressure)/dG over the film's scale; ``bend``: second derivative of the film gap times the
     gap's rate.
@@ -186,8 +191,8 @@ def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, 
 
 
 @njit(cache=True, fastmath=FAST)
-def bend_links(gaps, film):
-    """Correct conductances of links for different deflections at their ends: mean over the linear course of the gap.
+def correct_links(gaps, film):
+    """Correct conductances of links for different deflections at their ends, to the mean for a linear gap.
 
     ``H^3 + H d^2 = H^3 (1 + (d / H)^2)`` of a plain film, d half the difference of E. Flux effects keep their values at
     the mean gap.
@@ -196,16 +201,16 @@ def bend_links(gaps, film):
     H, HF, E = gaps.H.reshape(-1), gaps.HF.reshape(-1), gaps.E.reshape(-1)
     kx, kz = film.kx.reshape(-1), film.kz.reshape(-1)
     last = H.size - m
-    _bend(HF[:last], HF[:last], E[:last], E[m:], kx[:last])
-    _bend(HF[last:], HF[last:], E[last:], E[:m], kx[last:])
-    _bend(H[:-1], H[1:], E[:-1], E[1:], kz[:-1])
+    _correct(HF[:last], HF[:last], E[:last], E[m:], kx[:last])
+    _correct(HF[last:], HF[last:], E[last:], E[:m], kx[last:])
+    _correct(H[:-1], H[1:], E[:-1], E[1:], kz[:-1])
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
-def _bend(h_a, h_b, E_a, E_b, k):
+def _correct(h_a, h_b, E_a, E_b, k):
     for c in range(k.size):
-        lean = (E_b[c] - E_a[c]) / (h_a[c] + h_b[c])
-        k[c] *= 1.0 + lean * lean
+        half_ratio = (E_b[c] - E_a[c]) / (h_a[c] + h_b[c])
+        k[c] *= 1.0 + half_ratio * half_ratio
 
 
 @njit(cache=True, fastmath=FAST)
@@ -217,7 +222,7 @@ def add_gap_slopes(P, fill, full, rho, film, gap_slopes, load, rates, beta, by, 
     x, drive, steep = P.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1)
     link, area, filled, dense = gap_slopes.link.reshape(-1), film.area.reshape(-1), flat(fill), flat(rho)
     if full is not None:
-        # a fill moves no gap
+        # gaps do not depend on fills
         moves = full.reshape(-1)
         D, H, rate_P = D * moves, H * moves, rate_P * moves
     for c in range(size):
@@ -231,7 +236,7 @@ def add_gap_slopes(P, fill, full, rho, film, gap_slopes, load, rates, beta, by, 
         if fill is None:
             pseudo = rates.pseudo * beta * (steep[c] if x[c] == drive[c] else 1.0)
         else:
-            stored = filled[c] * (stored * rates.own + H[c] * (rates.mass + rates.pseudo))
+            stored = filled[c] * (stored * rates.gap_rate + H[c] * (rates.mass + rates.pseudo))
         if rho is not None:
             stored *= dense[c]
         slopes[4, c] += area[c] * (stored + pseudo)

@@ -8,11 +8,12 @@ The contact pressure P_c falls with the true gap G. So the relation has one root
 
     dG/dp = beta T,    dG/dG_rigid = T = 1 / (1 - beta P_c'(G))  in (0, 1].
 
-The effective compliance beta T is at most that of the liner, and nearly 0 where the contact is stiff against it. The
-liner takes up any overlap of the undeformed surfaces; at the ends and in grooves, whose pressure is prescribed, it does
-so by the contact alone. The film sees ``H = lim(G)``, with the gap limiter of a wall or of rough surfaces; on links
-``lim`` is taken of the true gap with the mean deflection of both ends. Where the pressure falls steeply, so does the
-gap. The conductance of a link is therefore the mean of H^3 over the linear course of the deflection between its ends,
+The effective compliance beta T is at most that of the liner, and nearly 0 where the contact is much stiffer than the
+liner. The liner deflects by any overlap of the undeformed surfaces; at the ends and in grooves, whose pressure is
+prescribed, only under the contact pressure. The gap of the film is ``H = lim(G)``, with the gap limiter of a wall or of
+rough surfaces. On links ``lim`` is applied to the true gap with the mean deflection of both ends. Where the pressure
+falls steeply, so does the gap. The conductance of a link is therefore the mean of H^3 for a deflection that is linear
+between its ends,
 
     g = H (H^2 + d^2),    d half the difference of E = lim(G) - lim(G_rigid) between the ends,
 
@@ -26,10 +27,10 @@ deflects. Without a history (a prescribed position) the deflection is steady.
 A viscosity or a density may follow the pressure. The film's unknown is then the transformed pressure P of
 `exudyn_ehd.film.lubricant.pressure_viscosity` or `exudyn_ehd.film.lubricant.density`, in which the pressure flow is
 that of a constant viscosity and density. The elements have the pressure p(P) itself, which grows exponentially with P.
-A Newton step that raises the pressure goes to the pressure that the tangent of p(P) predicts, which is less than its P
-would give; one that lowers it goes to its P. Either is the shorter way, and both agree to second order. Thick oil lifts
-the liner: the gap opens where a rigid bore has no film any more. A film that would need solid oil ends with
-NO_PRESSURE. Couette flows and storage contain the density as in `exudyn_ehd.film.solvers.film`.
+A Newton step that raises the pressure is reduced to the pressure that the tangent of p(P) predicts. A step that lowers
+it is taken in P. Each is the shorter one of both, and they agree to second order. Thick oil deflects the liner, so that
+a gap remains where a rigid bore has no film any more. A film that would need solid oil ends with NO_PRESSURE. Couette
+flows and storage contain the density as in `exudyn_ehd.film.solvers.film`.
 
 `ElrodAdams` has the balance of `exudyn_ehd.film.cavitation.closures` with the content ``rho fill H(P)``. At full
 vertices the storage depends on the unknown pressure through liner and density; at cavitated ones the unknown is the
@@ -40,15 +41,12 @@ the liner deflects under the clipped one. No theorem says that such a film exist
 found. `FullSommerfeld` has none where surfaces part so fast that tension pulls the liner shut (NO_FILM).
 
 Newton's method (`exudyn_ehd.film.solvers.newton`) starts from the last film, else from a dry guess. If it fails,
-pseudo-transient continuation follows (`exudyn_ehd.film.solvers.sets`). The rupture line inside the cells is that of
+pseudo-transient continuation follows (`exudyn_ehd.film.solvers.sets`): an additional storage at every vertex slows the
+film down and is reduced step by step. The rupture line inside the cells is that of
 `exudyn_ehd.film.solvers.liner.line`.
 
-Between rigid surfaces (beta 0) it is the film of an oil that thins by shear, whose conductances follow the pressure.
-
-Start of a film without a usable last film
-------------------------------------------
-Newton's method starts from a dry guess. If it fails, pseudo-transient continuation follows: an additional storage at
-every vertex slows the film down and is reduced step by step.
+With beta = 0, the same code solves the film of a shear-thinning oil between rigid surfaces, whose conductances follow
+the pressure.
 """
 
 from __future__ import annotations
@@ -66,7 +64,7 @@ from exudyn_ehd.film.solvers.film import FilmArrays
 from exudyn_ehd.film.solvers.liner.line import TOUCHING, AtLine, FilmLine, GapChain
 from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements, find_slopes, liner_residual
 from exudyn_ehd.film.solvers.matrix import factor_film
-from exudyn_ehd.film.solvers.newton import GOES_ON, begin, course_from, end_of, lift, proceed, solve_film
+from exudyn_ehd.film.solvers.newton import GOES_ON, begin, course_from, end_of, offset_pressures, proceed, solve_film
 from exudyn_ehd.film.solvers.sets import pseudo_time
 from exudyn_ehd.status import Status
 
@@ -77,7 +75,7 @@ class LinerFilm(WinklerElements):
     Parameters
     ----------
     film : FilmArrays
-        Takes over this object's gaps and links; its factor is that of Newton's matrix.
+        Arrays of the film; its gaps become those of the deformed surfaces.
     liner : Liner
 
     Attributes
@@ -89,37 +87,37 @@ class LinerFilm(WinklerElements):
     true_gap, contact_pressure, contact_slope : (n, m) arrays
         Gap of the deformed surfaces, contact pressure, Pa, and its derivative to the undeformed gap.
     gap_slopes : GapSlopes
-        Derivatives of the gaps that the film sees, for the last solution.
+        Derivatives of the film's gaps, for the last solution.
     at_line : AtLine
-        The film at the cavity's pressure.
+        Film at the cavity pressure.
     """
 
     def __init__(self, film: FilmArrays, liner: Liner) -> None:
         super().__init__(film, liner)
         s, w, shape = film.system, film.work, film.grid.shape
-        # the flux effect that follows the pressure
+        # flux effect whose conductances follow the pressure
         self.thin = next((e for e in film.flux_effects if isinstance(e, ShearThinning)), None)
         if self.thin is not None:
             self.thin.place(film.grid, film.flow_x)
-        # whether the pressure changes the deflection of the liner alone
+        # whether the liner's deflection is all that follows the pressure
         self.plain = self.contact is None and self.limiter is None and self.oil is None and not film.flux_effects
         self.film_fields = s.film
         self.by, self.by_speed = np.zeros((4, w.order.size)), np.zeros((3, w.order.size))
         self.fill = s.fill if s.kind == OIL else np.ones(shape)
         # the film at the pressure of the rupture line inside the cells
         self.at_line = AtLine((film.H, film.HF), None, None)
-        # what the kernels of `exudyn_ehd.film.solvers.newton` take
+        # arguments of the kernels of `exudyn_ehd.film.solvers.newton`
         self.residual, self.places = w.residual, (self.P, w.residual, w.unknowns, w.before)
         self.take_kind(s.kind)
 
     def take_kind(self, kind: int) -> None:
-        """Solve films of this kind from now on, see `exudyn_ehd.film.cavitation.states`."""
+        """Set the kind of the films to be solved, see `exudyn_ehd.film.cavitation.states`."""
         self.kind, self.film.work.ready = kind, False
         fill, w = self.fill if kind == OIL else None, self.film.work
         self.state, self.oil_fields = (w.u, w.above, fill), (fill, *self.densities)
 
     def forget_gradients(self) -> None:
-        """Let the sliding alone thin the oil."""
+        """Set the viscosity of a shear-thinning oil to that of pure sliding, without pressure gradients."""
         if self.thin is not None:
             self.thin.see(self.film.nothing)
 
@@ -131,8 +129,8 @@ class LinerFilm(WinklerElements):
         f.set_links()
 
     def hold_back(self) -> None:
-        """`FilmArrays.hold_back` with the deflection at the start of the step, so that it does not depend on where
-        Newton's method starts."""
+        """Apply `FilmArrays.hold_back` with the deflection at the start of the step, so that the result does not depend
+        on the initial guess of Newton's method."""
         f, D = self.film, self.film.nothing if self.delta_old is None else self.delta_old
         np.maximum(self.rigid[0] + D, TOUCHING, out=f.H)
         np.maximum(self.rigid[1] + 0.5 * (D + np.roll(D, -1, 0)), TOUCHING, out=f.HF)
@@ -154,9 +152,9 @@ class LinerFilm(WinklerElements):
         norm = liner_residual(self.P, fill, rho, *fields, rates, self.beta, pc, chooses, f.system.curve, self.residual)
         return norm, self.smallest
 
-    def see_cavity(self) -> None:
-        """Set the rupture line's coefficients for the film to be solved. Gaps and links are left at their values at the
-        cavity pressure."""
+    def set_line_terms(self) -> None:
+        """Set the rupture line's coefficients for the film to be solved. Afterwards gaps and links have their values at
+        the cavity pressure."""
         f, rates = self.film, self.rates
         if f.oil_line is None and f.line is None:
             return
@@ -186,17 +184,17 @@ class LinerFilm(WinklerElements):
         self.at_line = AtLine((gaps[0], gaps[1]), flux, chain)
 
     def fill_up(self, most: np.ndarray) -> None:
-        """Remove the cavity: every vertex is full and has at least the pressure of a fully developed curve, or
-        ``most``, whichever is less."""
+        """Remove the cavity: every vertex becomes full, those with a curve with a pressure of at least its value at
+        u = 1 or ``most``, whichever is less."""
         curve = self.film.system.rupture.whole.reshape(self.P.shape)
         np.logical_not(self.film.grid.fixed, out=self.film.work.active)
         self.fill[:] = 1.0
         np.maximum(self.P, np.minimum(self.film.system.base + curve, most), out=self.P, where=curve > 0.0)
 
     def solve(self) -> tuple[bool, int]:
-        """Solve by Newton's method from the present pressures and sets, in place; returns (found, steps)."""
+        """Solve by Newton's method from the present pressures and active set, in place; returns (found, steps)."""
         f, w, s = self.film, self.film.work, self.film.system
-        # the film from sliding alone has terms of its own
+        # the film without pressure gradients (`forget_gradients`) has set other terms
         s.terms.late[:], s.terms.known[:] = s.late, 0.0
         size = w.size
         w.ready = w.exact = False
@@ -211,12 +209,12 @@ class LinerFilm(WinklerElements):
             norm, gap = self.balance()
             response = self._response, w.matrix, self.places
             outcome, course = proceed(norm, gap, course, self.kind, s.base, *rest, *response)
-        lift(f.grid.fixed, w.above, s.base, self.P)
+        offset_pressures(f.grid.fixed, w.above, s.base, self.P)
         return w.take_end(*end_of(outcome, course))
 
     @property
     def _seen(self) -> tuple[tuple[object, ...], tuple[object, ...]]:
-        """Arguments ``elements`` and ``links`` of `find_slopes`."""
+        """Arguments ``elements`` and ``links`` of `find_slopes`, which are ``feedback`` of Newton's method."""
         f = self.film
         elements = (
             self.slope_fields, self.gap_fields, self.load_fields, tuple(self.rates), self.beta, self.by,
@@ -240,7 +238,7 @@ class LinerFilm(WinklerElements):
         return follows
 
     def factor_solution(self) -> None:
-        """Make the factor in the workspace that of the last solution."""
+        """Refactor Newton's matrix at the last solution."""
         w, fields = self.film.work, (self.kind, self.P, self.oil_fields, None, self.film_fields, self._seen)
         _, w.count, w.width = factor_film(*fields, self._response, w.matrix, w.active, (False, w.count, w.width))
 
@@ -263,12 +261,15 @@ class LinerFilm(WinklerElements):
         f.set_right_hand_side()
 
 
-# Limits of a dry guess: gap over the clearance that it may always open, and share of an oil's largest pressure that it
-# may always have.
+# Limits of the dry guess with a pressure law, of which the larger one holds: pressure that opens the gap to `OPEN`
+# clearances, and the fraction `MODERATE` of the oil's largest pressure. Larger values risk solid oil, smaller ones a
+# shut gap.
 OPEN, MODERATE = 0.01, 0.1
-# Gap over the clearance below which a dry guess opens the liner.
+# Gap over the clearance to which a dry guess opens the liner. Larger values start from a thicker film, smaller ones
+# from a nearly shut gap.
 THIN = 0.1
-# Share of an oil's largest pressure above which a film that is not found gets NO_PRESSURE.
+# Fraction of an oil's largest pressure above which a film that is not solved has the status NO_PRESSURE, instead of
+# NOT_CONVERGED.
 NEARLY_SOLID = 0.9
 
 
@@ -288,11 +289,13 @@ def cold_start(film: LinerFilm) -> tuple[bool, int]:
 
 
 def _dry_guess(film: LinerFilm) -> None:
-    """Set a full film as the initial guess. Without a contact, its pressure opens gaps below `THIN` to `THIN`, within
-    the limits of `_transformed`; in a film at rest it is at most the largest prescribed pressure. Curves open the liner
-    by `THIN` at most."""
+    """Set a full film as the initial guess.
+
+    Without a contact, its pressure opens gaps below `THIN` to `THIN`, within the limits of `_transformed`. In a film at
+    rest it is at most the largest prescribed pressure. The pressures of curves open the liner by at most `THIN`.
+    """
     H0 = film.rigid[0]
-    # curves of a nearly shut gap have pressures that would open it by many clearances
+    # in a nearly shut gap, pressures of curves would open it by many clearances
     guess, most = np.zeros(H0.shape), np.full(H0.shape, THIN / max(film.beta, 1e-300))
     if film.contact is None and H0.min() < THIN and film.beta > 0.0:
         guess = np.maximum((THIN - H0) / film.beta, 0.0)
@@ -313,8 +316,11 @@ def _at_rest(film: LinerFilm) -> bool:
 
 
 def _transformed(film: LinerFilm, oil: PressureTransform, guess: np.ndarray) -> np.ndarray:
-    """Unknowns of guessed pressures (n, m), limited to the larger of what opens the gap to `OPEN` and the share
-    `MODERATE` of the oil's largest pressure."""
+    """Return the unknowns of guessed pressures (n, m).
+
+    Pressures are limited to that which opens the gap to `OPEN`, or to `MODERATE` times the oil's largest pressure if
+    this is higher.
+    """
     touching = np.maximum((OPEN - film.rigid[0]) / film.beta, 0.0)
     p = np.minimum(guess, np.maximum(touching, MODERATE * oil.largest_pressure / film.scale))
     return oil.transform(np.minimum(p * film.scale, oil.largest_pressure)) / film.scale
@@ -348,17 +354,17 @@ def pseudo_transient(film: LinerFilm) -> tuple[bool, int]:
 
 
 def _stored(film: LinerFilm) -> np.ndarray:
-    """Quantity (n, m) that pseudo time stores at the present state: mass, or the deflection by the film's unclipped
-    pressure."""
+    """Quantity (n, m) that pseudo time stores, at the present state: mass, or deflection under the unclipped
+    pressure of the film."""
     if film.kind != OIL:
         return film.beta * (film.load.p + (film.P - film.load.drive))
     return film.film.content
 
 
 def failure(film: LinerFilm) -> Status:
-    """Status of a film that was not found."""
+    """Return the status of a film for which all methods have failed."""
     f, s, rigid = film.film, film.film.system, film.rigid
-    # in pseudo time it ended with the last film that it found
+    # fields are those of the last film that pseudo-transient continuation has solved
     unfed = s.turns > 0.0 and has_unfed_row(s.linear_pressure, f.H, s.fixed, s.turns, s.cavity_pressure)
     if unfed and not rigid[2].any():
         return Status.NO_OIL
@@ -366,6 +372,6 @@ def failure(film: LinerFilm) -> Status:
         return Status.NO_PRESSURE
     if film.contact is not None or film.beta == 0.0:
         return Status.NOT_CONVERGED
-    # tension may pull the liner shut: without cavitation, or by the cavity's own pressure
+    # tension may pull the liner shut: without cavitation, or by a negative cavity pressure
     shut = not f.ruptures or float(rigid[0].min()) + film.beta * film.cavity_load <= 0.0
     return Status.NO_FILM if shut else Status.NOT_CONVERGED

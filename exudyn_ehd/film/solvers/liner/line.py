@@ -1,14 +1,15 @@
 """Rupture line inside the cells of a film whose gap, density or conductances follow its pressure.
 
-Symbols of `exudyn_ehd.film.cavitation.rupture_line`. At the line the pressure is the cavity pressure, with zero
-gradient and zero rate. So f and k are those of a film at the cavity pressure everywhere: of its density, of its
-conductances without pressure flow, and of its liner at rest. They do not follow the pressure. N therefore depends on
-the pressure of its own vertex alone, and the balances stay as monotone as they are.
+Symbols: see `exudyn_ehd.film.cavitation.rupture_line`. At the line the pressure is the cavity pressure, with zero
+gradient and zero rate. So f and k are computed for a film at the cavity pressure everywhere: with its density, with its
+conductances without pressure flow, and with the liner at rest. They do not follow the pressure. N therefore depends on
+the pressure of its own vertex alone, and does not impair the monotonicity of the balances.
 
-A liner of compliance beta lifts the bore from the line on. The Couette flow that its deflection adds is counted as
-conductance, ``k + beta |vx| width / 2``. With it, a vertex joins the film exactly when the vertex before it is full.
-Where the pressures within one cell change the gap h itself, by ``t h`` with ``t = beta f / (2 k h)``, the grid is too
-coarse for the parabola. There f becomes ``f / (1 + t^2)``, and the line moves to the vertices as h vanishes.
+A liner of compliance beta deflects from the line on. The Couette flow that its deflection adds is counted as
+conductance, ``k + beta |vx| width / 2``. With it, a vertex becomes active exactly when the vertex before it is full.
+The pressures within one cell change the gap h by ``t h`` with ``t = beta f / (2 k h)``. Unless t is small, the grid is
+too coarse for the parabola. f is therefore replaced by ``f / (1 + t^2)``, so that the line moves to the vertices as h
+vanishes.
 
 A film that conserves mass has the curve of `exudyn_ehd.film.cavitation.oil_line`, with f, k and o of the same film at
 the cavity pressure. In front of the line its flow over the middle of the link is ``o + f (s - 1/2)``. The scheme's flow
@@ -35,36 +36,37 @@ from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import LinkFlux
 
-# Gap over the clearance below which surfaces at the cavity's pressure touch: no line is looked for there.
+# Gap over the clearance below which surfaces at the cavity pressure count as touching: no line lies there. Larger
+# values omit lines in thin films, smaller ones divide by nearly vanishing gaps.
 TOUCHING = 1e-6
 
 
 @njit(cache=True)
-def lean_line(line, HF, beta, lift, lean_out):
-    """Let a liner of compliance ``beta``, whose deflection adds ``lift`` (m,) to k, lower f by t, which is set."""
-    f, k, whole, gap, lean, m = line[0], line[1], line[4], HF.reshape(-1), lean_out.reshape(-1), HF.shape[1]
+def limit_by_liner(line, HF, beta, lift, gap_ratio_out):
+    """Set t in ``gap_ratio_out`` and f / (1 + t^2), for a liner of compliance ``beta`` that adds ``lift`` (m,) to k."""
+    f, k, whole, gap, gap_ratio, m = line[0], line[1], line[4], HF.reshape(-1), gap_ratio_out.reshape(-1), HF.shape[1]
     for c in range(f.size):
         k[c] += lift[c % m]
         t = beta * f[c] / (k[c] * (gap[c - m] + gap[c])) if f[c] > 0.0 else 0.0
-        lean[c] = t
+        gap_ratio[c] = t
         f[c] /= 1.0 + t * t
         whole[c] = 0.5 * f[c] / k[c] if f[c] > 0.0 else 0.0
 
 
 @njit(cache=True)
 def _by_bare(t):
-    """Return df / d(f without a liner), and d(ln f) / d(ln k), which is also d(ln f) / d(ln h)."""
+    """Return df / d(f without liner), and d(ln f) / d(ln k), which is equal to d(ln f) / d(ln h)."""
     held = 1.0 / (1.0 + t * t)
     turned = 2.0 * (t * held) * (t * held)
     return held - turned, turned / held
 
 
 @njit(cache=True)
-def yielding_rows(line, lean, density, lift, number, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh):
-    """Return `exudyn_ehd.film.cavitation.rupture_line.line_rows`, through t too, and through the liner's conductance
-    ``lift`` (m,) times the speed."""
+def liner_rows(line, gap_ratio, density, lift, number, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh):
+    """Return the results of `exudyn_ehd.film.cavitation.rupture_line.line_rows`, with the derivatives through t and
+    through the conductance that the liner adds, ``lift`` (m,) times the speed."""
     rows, places, weights = weigh_line(line, number)
-    gap, t, m = HF.reshape(-1), lean.reshape(-1), HF.shape[1]
+    gap, t, m = HF.reshape(-1), gap_ratio.reshape(-1), HF.shape[1]
     f, k, s, by = line[0], line[1], line[6], np.zeros((10, places.size))
     for q in range(places.size):
         c = places[q]
@@ -79,9 +81,11 @@ def yielding_rows(line, lean, density, lift, number, H, HF, slopes, by_speed, vx
 
 
 class GapChain(NamedTuple):
-    """Derivatives of the gaps that the film sees, (n, m) each: ``slope`` to the true gap, ``bend`` second derivative to
-    it times its rate, ``face_slope`` to it on links in theta. ``follow``: of the deflection to the gap of the
-    undeformed surfaces."""
+    """Derivatives of the film's gaps, (n, m) each.
+
+    ``slope``: to the true gap; ``bend``: second derivative to the true gap, times its rate; ``face_slope``: to the true
+    gap on links in theta; ``follow``: derivative of the deflection to the gap of the undeformed surfaces.
+    """
 
     slope: np.ndarray
     bend: np.ndarray
@@ -90,16 +94,16 @@ class GapChain(NamedTuple):
 
 
 class AtLine(NamedTuple):
-    """A film at its rupture line.
+    """Film at the cavity pressure, for the derivatives of its rupture line.
 
     Attributes
     ----------
     gaps : two (n, m) arrays
-        At vertices and links.
+        Gaps at vertices and links.
     flux : LinkFlux or None
-        Coefficients of the links; None of a plain film.
+        Coefficients of the links; None for a plain film.
     chain : GapChain or None
-        None without contact and gap limiter.
+        Derivatives of the film's gaps; None without contact and gap limiter.
     """
 
     gaps: tuple[np.ndarray, np.ndarray]
@@ -114,7 +118,7 @@ class FilmLine(RuptureLine):
     ----------
     density : float
         Density in the cavity over that at ambient pressure.
-    lean : (n, m) array
+    gap_ratio : (n, m) array
         t of the module.
     lift_by_speed : (m,) array
         Conductance that a liner's deflection adds to k, over vx.
@@ -124,15 +128,15 @@ class FilmLine(RuptureLine):
 
     def __init__(self, block: np.ndarray, shape: tuple[int, int]) -> None:
         super().__init__(block, shape)
-        self.density, self.lean, self.lift_by_speed = 1.0, np.zeros(shape), np.zeros(shape[1])
-        self.liner = 0.0, self.lean
+        self.density, self.gap_ratio, self.lift_by_speed = 1.0, np.zeros(shape), np.zeros(shape[1])
+        self.liner = 0.0, self.gap_ratio
 
     def take(self, film: FilmTerms, b: np.ndarray, density: float, vx: float) -> None:
         """Set f, k and t from the terms and the right-hand side b (n, m) of a film at the cavity pressure."""
         (beta, gaps), self.density, self.s[:] = self.liner, density, 1.0
         line_terms(film.kx, density * b, film.fixed, True, self.block)
         if beta > 0.0:
-            lean_line(self.block, gaps, beta, self.lift_by_speed * vx, self.lean)
+            limit_by_liner(self.block, gaps, beta, self.lift_by_speed * vx, self.gap_ratio)
 
     def gradients(
         self,
@@ -144,10 +148,11 @@ class FilmLine(RuptureLine):
         squeeze: bool,
         mesh: tuple[np.ndarray, ...],
     ) -> Gradients:
-        """Return `RuptureLine.gradients`, with what the liner adds, for gaps and flux at the cavity's pressure."""
+        """Return the results of `RuptureLine.gradients`, with the liner's contribution, for ``gaps`` and ``flux`` at
+        the cavity pressure."""
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
-        rest = self.block, self.lean, self.density, self.lift_by_speed, work.number
-        return Gradients(*yielding_rows(*rest, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh))
+        rest = self.block, self.gap_ratio, self.density, self.lift_by_speed, work.number
+        return Gradients(*liner_rows(*rest, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh))
 
 
 def undeformed(line: Gradients, chain: GapChain | None) -> Gradients:
@@ -158,7 +163,7 @@ def undeformed(line: Gradients, chain: GapChain | None) -> Gradients:
     out = line.to_true_gap(chain.slope, chain.bend, chain.face_slope)
     i, j = np.divmod(line.places, m)
     nxt, prv, here = (i + 1) % n, (i - 1) % n, chain.follow[i, j]
-    # a link's deflection is the mean of its ends'
+    # the deflection on a link is the mean of those at its ends
     out.by[8], out.by[9] = 0.5 * out.by[0] * chain.follow[nxt, j], 0.5 * out.by[1] * chain.follow[prv, j]
     out.by[2] += out.by[2] * here + 0.5 * (out.by[0] + out.by[1]) * here
     out.by[3] *= 1.0 + chain.follow[i, (j + 1) % m]

@@ -1,4 +1,4 @@
-"""Winkler elements of a liner: pressure on them, deflection, contact, the gap that the film sees, and mass balances.
+"""Winkler elements of a liner: pressure on them, deflection, contact, gap of the film, and mass balances.
 
 The equations are in `exudyn_ehd.film.solvers.liner.film`.
 """
@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.cavitation.states import OIL, take_sink
+from exudyn_ehd.film.cavitation.states import OIL, subtract_sink
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.reynolds.balance import carried_fill, film_balance, terms_of, upstream, violation
 from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
@@ -21,7 +21,7 @@ from exudyn_ehd.film.solvers.liner.elements import (
     GapSlopes,
     Load,
     Rates,
-    bend_links,
+    correct_links,
     drive_elements,
     element_slopes,
     gaps_of,
@@ -53,14 +53,14 @@ def find_slopes(P, fill, rho, film, elements, links):
 def liner_residual(
     P, fill, rho, load_fields, gap_fields, terms, fixed, known, rates, beta, pc, complementary, curve, out
 ):  # fmt: skip
-    """Apply `bend_links` and set the residual of every vertex, for the present elements and links; returns its norm,
+    """Apply `correct_links` and set the residual of every vertex, for the present elements and links; returns its norm,
     see `violation`."""
     film, gaps = terms_of(terms, fixed), gaps_of(gap_fields)
     set_storage(gaps, load_of(load_fields), P, fill is not None, known, Rates(*rates), beta, film)
-    bend_links(gaps, film)
+    correct_links(gaps, film)
     film_balance(P, fill, rho, film, out)
     if complementary:
-        take_sink(curve[0], curve[6], 1.0, out)
+        subtract_sink(curve[0], curve[6], 1.0, out)
     return violation(out, P, fixed, pc, complementary)
 
 
@@ -93,11 +93,11 @@ class Liner(NamedTuple):
     Attributes
     ----------
     contact : Contact or None
-        Contact whose pressure acts on the liner, as the film's does.
+        Contact whose pressure deflects the liner, in addition to that of the film.
     limiter : GapLimiter or None
-        Limiter of the gap that the film sees; comes with a contact or with flow factors.
+        Limiter of the film's gap, with a contact or with flow factors.
     oil : PressureTransform or None
-        Law of a viscosity that follows the pressure; of a compressible film that of its density.
+        Law of a viscosity that follows the pressure; for a compressible film its density law.
     """
 
     contact: Contact | None = None
@@ -106,8 +106,7 @@ class Liner(NamedTuple):
 
 
 class WinklerElements:
-    """Elements under a film, and the gaps that it sees, for given unknowns; parameters and attributes as for
-    `LinerFilm`."""
+    """Elements under a film and the film's gaps, for given unknowns; parameters and attributes as for `LinerFilm`."""
 
     def __init__(self, film: FilmArrays, liner: Liner) -> None:
         self.film, s, shape = film, film.system, film.grid.shape
@@ -126,7 +125,7 @@ class WinklerElements:
         self.rigid_film, s.mass_old, self.pseudo_old = self.known
         self.true_gap, self.pressed = np.ones(shape), np.ones(shape)
         self.contact_pressure, self.contact_slope, self.contact_G, self.bend = np.zeros((4, *shape))
-        # the part of a vertex that the contact presses on
+        # part of the area of a vertex under contact pressure
         self.touching = 1.0 if self.contact is None else self.contact.land
         self.gap_fields, self.slope_fields, self.load_fields = (np.zeros((k, *shape)) for k in (5, 9, 4))
         self.gaps, self.gap_slopes = Gaps(*self.gap_fields), GapSlopes(*self.slope_fields)
@@ -134,7 +133,7 @@ class WinklerElements:
         for field in (self.gaps.H, self.gaps.HF, self.gap_slopes.link, self.gap_slopes.rate_t, self.load.slope):
             field[:] = 1.0
         film.take_gaps(self.gaps.H, self.gaps.HF, self.gaps.rate)
-        # the cavity's pressure on the elements
+        # pressure on the elements in the cavity
         self.cavity_load = 0.0
 
     @property
@@ -162,7 +161,7 @@ class WinklerElements:
         return float(min(self.true_gap.min(), self.true_link.min()))
 
     def stored_power(self) -> float:
-        """Scaled power ``sum (p + p_c) dD/dt`` that goes into the liner, not the film; 0 for a steady deflection."""
+        """Scaled power ``sum (p + p_c) dD/dt`` that is stored in the liner; 0 for a steady deflection."""
         pressure = self.load.p + self.contact_pressure / self.scale
         return float(np.sum(pressure * self.deflection_rate * self.film.grid.weight))
 
@@ -177,7 +176,7 @@ class WinklerElements:
         return self.rigid[2] + self.deflection_rate
 
     def deform(self, gap: np.ndarray) -> np.ndarray:
-        """Deform the gap (n, m) at the start of a step, in place, to the one that the film saw; returns its
+        """Convert the undeformed gap (n, m) at the start of a step to the film's gap, in place; returns its
         derivative."""
         if self.delta_old is not None:
             gap += self.delta_old
@@ -187,7 +186,7 @@ class WinklerElements:
         return slope
 
     def take_rigid(self) -> None:
-        """Store gaps and rate of the undeformed surfaces, and the film gap that a limiter makes of them."""
+        """Store gaps and rate of the undeformed surfaces, and the film gap of a limiter for them."""
         f, r = self.film, self.rigid
         self.scale = f.pressure_scale
         r[0], r[1] = f.H, f.HF
@@ -198,20 +197,20 @@ class WinklerElements:
             self.limiter.limit(self.rigid_film, f.HF, scratch[0], self.rigid_slope, scratch[1], scratch[2])
 
     def set_rates(self, step: float) -> None:
-        """Set the rates of the storage, for the system's of a film that conserves mass."""
+        """Set the rates of the storage; that of the mass is taken from the film's system."""
         f, s = self.film, self.film.system
         self.deflection_inverse = 0.0
         if self.delta_old is not None:
             self.deflection_old[:] = self.delta_old
             if f.squeeze:
                 self.deflection_inverse = 1.0 / step if step > 0.0 else f.inverse_instant()
-        # the liner's own rate is part of the mass rho fill H
+        # with mass conservation, the change of the deflection is part of that of the mass rho fill H
         by_liner = 0.0 if s.kind == OIL else self.deflection_inverse
         self.rates = Rates(s.inverse_step, by_liner, 0.0, float(s.inverse_step == 0.0 or s.instant))
 
     def set_known_loads(self) -> bool:
-        """Set the elements' pressures at prescribed vertices and in the cavity; returns False if the oil's law has
-        none."""
+        """Set the elements' pressures at prescribed vertices and in the cavity; returns False if one of them is beyond
+        the oil's law."""
         s, fixed, P = self.film.system, self.film.grid.fixed, self.P
         if self.film.closure.clips:
             P[fixed] = s.pressure[fixed]
@@ -224,7 +223,7 @@ class WinklerElements:
         return inside
 
     def ends_open(self) -> bool:
-        """Return whether gaps of prescribed pressure are open; those with a contact always are."""
+        """Return whether gaps at vertices with prescribed pressure are open; True for every film with a contact."""
         if self.contact is not None:
             return True
         D, fixed = self.beta * (self.P if self.oil is None else self.load.p), self.film.grid.fixed
@@ -241,13 +240,12 @@ class WinklerElements:
         inside, (p, load.slope[:], bend, rho, rho_q) = self.oil.fields(load.drive * self.scale)
         load.p[:], load.bend[:] = p / self.scale, bend * self.scale
         if f.rho_P is not None:
-            # the density stays where the pressure is clipped
+            # the density is constant where the pressure is clipped
             f.rho[:], f.rho_P[:] = rho, rho_q * (load.drive == P) * self.scale
         return inside and float(p.max()) <= self.oil.largest_pressure
 
     def update_elements(self, P: np.ndarray) -> bool:
-        """Update the elements and the gaps that the film sees for its unknown P; returns False if the oil's law has no
-        such pressure."""
+        """Update the elements and the film's gaps for the unknown P; returns False if it is beyond the oil's law."""
         f, contact = self.film, self.contact
         if not self.press(P):
             return False
