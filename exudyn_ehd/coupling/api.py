@@ -1,4 +1,4 @@
-"""`CreateLubricatedJoint`: the one call that puts an oil-filled joint between two bodies of an Exudyn system."""
+"""`CreateLubricatedJoint`, which puts an oil-filled joint between two bodies of an Exudyn system."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _WHERE = "CreateLubricatedJoint"
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Free:
-    """``axial`` of a joint: the journal slides along its axis; ``tilt``: it tilts as far as the film lets it.
+    """Option of a joint. As ``axial``: the journal slides along its axis; as ``tilt``: only the film resists tilting.
 
     Examples
     --------
@@ -47,10 +47,10 @@ class Free:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Held:
-    """``axial`` of a joint: a constraint holds the journal along its axis; ``tilt``: journal and bore stay parallel.
+    """Option of a joint. As ``axial``: a constraint holds the journal along its axis; as ``tilt``: it stays parallel.
 
-    One algebraic constraint does either or both and carries the axial force or the tilting moment that the film does
-    not.
+    One algebraic constraint does either or both. It carries the axial force or the tilting moment that the film does
+    not carry.
 
     For implicit and static solvers only: Exudyn's explicit solvers stop at once and name the constraint object
     (``constraintNumber`` of the joint).
@@ -265,7 +265,7 @@ def require_arguments(
     motions: dict[str, Free | Held],
     flags: dict[str, bool],
 ) -> None:
-    """Check what all calls that create joints have in common."""
+    """Check the arguments that all functions which create joints have in common."""
     require_system(where, mbs, assembled=False)
     for argument, value in flags.items():
         require_bool(f"{where}.{argument}", value)
@@ -276,7 +276,7 @@ def require_arguments(
 
 
 def equip(joint: Joint, control: StepControl | None, record: RecordOption | None = None) -> None:
-    """Give a joint a control of its steps and a rule for its record."""
+    """Set the step control and the rule for the record of a joint."""
     steps = joint.element.steps
     if control is not None:
         steps.control = GapWatch(control, joint.bearing)
@@ -311,7 +311,7 @@ def attach(
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
     gravity: np.ndarray | None = None,
 ) -> LubricatedJoint:
-    """Put a film model between two resolved items; what `CreateLubricatedJoint` does after its checks of arguments.
+    """Put a film model between two resolved items; `CreateLubricatedJoint` calls this after its checks of arguments.
 
     Parameters
     ----------
@@ -352,9 +352,9 @@ def attach(
 
 
 def _yields(model: JointModel, sides: tuple[Side, Side], motion: np.ndarray) -> bool:
-    """Return whether a flexible bore has a film at a motion (10,) that leaves a rigid bore no gap.
+    """Return whether a flexible bore has a film at a motion (10,) at which the gap of a rigid bore would be closed.
 
-    The arrays of the sides must belong to that motion.
+    The work arrays of the sides must belong to that motion.
     """
     if isinstance(model, ElasticBearingModel):
         return initial_coordinates(model, sides) is not None

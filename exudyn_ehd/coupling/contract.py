@@ -29,7 +29,10 @@ Index: TypeAlias = SupportsInt
 
 
 def require_system(where: str, mbs: exu.MainSystem, *, assembled: bool | None = None, of: str = "") -> None:
-    """Refuse what is no system of Exudyn, and one that is not ``assembled`` as told; ``of`` tells whose it is."""
+    """Raise `InputError` unless ``mbs`` is a system of Exudyn and, if ``assembled`` is given, assembled or not.
+
+    ``of``: description of the system, for the message.
+    """
     if not isinstance(mbs, exu.MainSystem):
         raise InputError(
             f"{where}.mbs must be an exudyn.MainSystem, got {type(mbs).__name__}; give what "
@@ -51,8 +54,8 @@ def objects_of(mbs: exu.MainSystem) -> Iterator[tuple[Index, Data]]:
 class JointEvaluation(Protocol):
     """Result of one film evaluation.
 
-    ``wrench`` (6,) = [Fx, Fy, Fz, Mx, My, Mz] acts on the journal, in the joint frame, moment about its origin O; the
-    housing gets exactly minus it about the same point. It is nan unless ``status`` is `Status.CONVERGED`.
+    ``wrench`` (6,) = [Fx, Fy, Fz, Mx, My, Mz] acts on the journal, in the joint frame, with the moment about its origin
+    O. Minus this wrench, about the same point, acts on the housing. It is nan unless ``status`` is `Status.CONVERGED`.
     """
 
     @property
@@ -60,13 +63,13 @@ class JointEvaluation(Protocol):
     @property
     def wrench(self) -> np.ndarray: ...
     def tangent(self) -> np.ndarray:
-        """Derivative (6, 10) of the wrench with respect to the motion; only until the model's next evaluation."""
+        """Derivative (6, 10) of the wrench to the motion; it must be called before the model's next evaluation."""
 
     def quantities(self) -> Mapping[str, float]:
         """Scalars by name: minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load."""
 
     def history(self) -> History | None:
-        """Return the film's memory after this state, for the case that it is accepted."""
+        """Return the film's history after this state, for an accepted step."""
 
 
 @dataclass(slots=True, eq=False)
@@ -111,7 +114,7 @@ class Trial:
 
 
 class JointModel(Protocol):
-    """A film: a pure function of its memory and of the motion (10,) of the journal axis in the joint frame."""
+    """Model of a film: a pure function of its memory and of the motion (10,) of the journal axis in the joint frame."""
 
     @property
     def bearing(self) -> JournalBearing: ...
@@ -124,7 +127,7 @@ class JointModel(Protocol):
         """Return whether the force depends on the journal's angle (supply areas in the journal)."""
 
     def initial_history(self, motion: np.ndarray) -> History | None:
-        """Memory at the start of a run, at this motion."""
+        """History at the start of a run, for this motion."""
 
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
@@ -139,7 +142,7 @@ class JointModel(Protocol):
 class Side:
     """Frame of one side of a joint as a function of the coordinates of its nodes.
 
-    Work arrays of its own for other states than the solver's come by `copy.deepcopy`.
+    The work arrays belong to the solver's state. For another state use a `copy.deepcopy` of the side.
 
     Parameters
     ----------

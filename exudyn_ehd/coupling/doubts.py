@@ -1,45 +1,46 @@
-"""Steps that are too long for what they integrate.
+"""Warnings of runs: steps that are too large, doubtful films, and the summary line of a run.
 
 Explicit integrators beyond their stability limit
 -------------------------------------------------
 A film is a damper C between masses: beyond h C / m = 2 (forward Euler), 2.51 (RK33) or 2.79 (RK44) the journal's
-velocity is a product of the step size h. The film's stiffening keeps it finite, so that the journal chatters about a
-wrong place. What tells is that velocities are no longer the rates of the positions: with the displacement d of a step
-and the velocities v0, v1 at its ends,
+velocity depends on the step size h instead of the physics. The stiffening film keeps it finite, so that the journal
+chatters about a wrong position. The criterion is that velocities are no longer the rates of the positions: with the
+displacement d of a step and the velocities v0, v1 at its ends, the mismatch
 
     s = |d - h (v0 + v1) / 2| / (h max(|v0|, |v1|))
 
 is |sin(a) / a - cos(a)|, a = pi / n, for an oscillation with n steps per period: 0.05 at eight, 0.19 at four, 0.64 at
 two. For v' = -lambda v a Runge-Kutta method has d = h v0 (1 - R) / z, with z = h lambda and its stability function
 R(z): s = |(1 - R) / z - (1 + R) / 2| is 2 / z at the limit R = -1 and 1 at the limit R = 1, however slow the growth.
-Single steps of that kind belong to impacts, and those that die away to transients that end within some steps: neither
+Single steps of this kind come from impacts, and decaying ones from transients that end within some steps: neither
 counts.
 
-Far beyond the limit a step throws the journal out of the thin film, where its damping is a hundredth; it flies back for
-some well resolved steps and is thrown again, each time by another amount. Film and walls slow a journal down: a step
-that is not resolved and makes it faster is such a kick, and kicks in short succession count however unequal they are.
+Far beyond the limit a step throws the journal out of the thin film to where its damping is a hundredth. The journal
+returns in some well resolved steps and is thrown again, each time by a different amount. Film and walls slow a journal
+down. So a step that is not resolved and makes the journal faster is such a kick. Kicks in short succession count, even
+if they differ in size.
 
 Bodies on absolute coordinates that turn too far in a step
 ----------------------------------------------------------
-Their nodes move on circles that an integrator's formulas leave: in the first turn a free ring of any wall and material
-loses the share
+Nodes of such bodies move on circles, from which the formulas of an integrator deviate. In the first turn a free ring of
+any wall and material loses the share
 
     (0.24 + 1.64 (1 - rho)^3) a^2
 
 of its angular momentum, with the turn a of a step in rad and the spectral radius rho (measured to 15 % of it at 20 to
-160 steps a turn and radii of 0 to 0.95, an ANCF beam alike), most of it in the first steps. And the elements vibrate:
-what a turn feeds into them outgrows the integrator's damping where a is beyond 0.87 to 1.05 (1 - rho), up to elements
-that turn inside out; none did at 0.79 (1 - rho). At rho = 1 that takes some turns at 120 steps a turn, and was not seen
-in six turns at 200.
+160 steps a turn and radii of 0 to 0.95; an ANCF beam behaves alike), most of it in the first steps. The elements also
+vibrate. These vibrations grow, until elements turn inside out, if a exceeds 0.87 to 1.05 (1 - rho), because the
+integrator damps them less than the rotation excites them; at 0.79 (1 - rho) none grew. At rho = 1 they take some turns
+to grow at 120 steps a turn, and did not grow in six turns at 200.
 
-Spectral radii near 1. A film holds a journal of mass m with the damping D >> m / h: what its velocity departs from the
-film's own rate is multiplied by about -rho in every step. At rho = 1 it alternates for ever. A start at rest, a halved
-step or a film boundary that moves throws it anew, and forces that follow no straight line make displacements of it.
-Measured on journals that whirl freely in 4 or 8 turns of 50 to 200 steps (clearances of 20 to 100 um, 50 to 800 rad/s,
-three closures, starts at rest): 36 runs at 0.9 without a bad one, and the growth rates of all 24 that were compared are
-those at 0.6. Runs with a wrong growth or hundreds of halved steps, counted by eye: about 7 of 36 at 0.95, 7 of 12 at
-0.99, 3 of 11 at 1. A whirl of 80 steps per period loses 2e-7 of its amplitude per period at 0.9. `TrapezoidalIndex2`
-has the radius 1.
+Spectral radii near 1. A film holds a journal of mass m with the damping D >> m / h. The difference between the
+journal's velocity and its quasi-static rate in the film is multiplied by about -rho in every step, and at rho = 1 it
+alternates for ever. A start at rest, a halved step or a moving film boundary excites it again, and nonlinear forces
+turn it into displacements. Measured on journals that whirl freely in 4 or 8 turns of 50 to 200 steps (clearances of 20
+to 100 um, 50 to 800 rad/s, three closures, starts at rest): 36 runs at 0.9 without a bad one, and the growth rates of
+all 24 that were compared are those at 0.6. Runs with a wrong growth or hundreds of halved steps, counted by eye: about
+7 of 36 at 0.95, 7 of 12 at 0.99, 3 of 11 at 1. A whirl of 80 steps per period loses 2e-7 of its amplitude per period at
+0.9. `TrapezoidalIndex2` has the radius 1.
 
 Summary of a run, one line per joint, in the log
 ------------------------------------------------
@@ -50,10 +51,10 @@ Films that run dry, are too thin for their surfaces, too steep for their grid, o
 --------------------------------------------------------------------------------------------------
 Films that run dry conserve mass, oil leaves them through the ends, and nothing brings it back.
 
-In a flooded film the cavity's void takes some 0.4 of ``1 - smallest gap / mean gap``, as a share of the film's volume.
-What the load squeezes out beyond it costs load: 10 % at a void of 0.55, 0.7 and 0.85 of it (eccentricity ratios 0.3,
-0.6 and 0.9), which at a given eccentricity comes within one or two turns, and soon all. Under a given load the journal
-sinks.
+In a flooded film the void of the cavity is some 0.4 times ``1 - smallest gap / mean gap``, as a share of the film's
+volume. More void reduces the load: by 10 % at a void of 0.55, 0.7 and 0.85 times this number, for eccentricity ratios
+of 0.3, 0.6 and 0.9. At a given eccentricity this happens within one or two turns, and soon the film carries nothing.
+Under a given load the journal sinks.
 
 Films thinner than the surfaces are rough, where the bearing says nothing about rough surfaces or contact.
 
@@ -103,25 +104,26 @@ from exudyn_ehd.status import (
 
 # Mismatch s of a step that is not resolved: an oscillation with less than 3.5 steps per period.
 UNRESOLVED = 0.25
-# Position error below which a step counts as resolved, as does a small share of the gap, m: rounding of positions some
-# metres from the origin stays below.
+# Position error, m, below which a step counts as resolved. It is larger than the round-off of positions some metres
+# from the origin. A small share of the gap is a second such limit.
 SMALLEST_MISMATCH = 1e-14
-# A step counts if its error is still so large a share of the largest one before, which fades.
+# Least error of a step that counts, over the largest error before it, which counts less from step to step.
 LASTING_SHARE = 0.15
-# A step that counts adds two, any other takes one.
+# Score at which chatter is reported: a step that counts adds two, any other subtracts one. Larger: reported later.
 LIMIT = 32
-# A step is a kick if it makes the journal faster by this factor; a kick adds seven and any other step takes one, so
-# that one in eight lasts.
+# Least growth of the speed in a kick; a kick adds this weight to a score, any other step subtracts one, so that one
+# kick in eight steps keeps it; score at which chatter is reported.
 KICK, KICK_WEIGHT, KICK_LIMIT = 1.1, 7, 70
-# Loss of angular momentum in a turn that counts, and the turn of a step over 1 - rho from which vibrations may grow; no
-# smaller turn of a step than the last one counts, rad.
+# Loss of angular momentum in a turn above which a run warns; turn of a step over 1 - rho, rad, above which vibrations
+# may grow; turn of a step, rad, below which vibrations are not assumed to grow.
 LOST, GROWING, LEAST_TURN = 0.01, 0.8, 2.0 * math.pi / 200
-# Largest spectral radius at which alternating velocities fade soon enough, see above; a smaller one damps whirl more.
+# Spectral radius above which a run warns: alternating velocities then decay too slowly, see above. A smaller radius
+# damps whirl more.
 LARGEST_RADIUS = 0.9
 
 
 class ChatterWatch:
-    """Watches one joint under an explicit solver.
+    """Detection of chatter at one joint under an explicit solver.
 
     Parameters
     ----------
@@ -142,14 +144,14 @@ class ChatterWatch:
         self.score = self.kicks = 0
 
     def sees_chatter(self, time: float, motion: np.ndarray) -> bool:
-        """Take an accepted state; whether the last steps were not resolved.
+        """Add an accepted state; return whether the last steps were not resolved.
 
         Parameters
         ----------
         time : float
             s.
         motion : (10,) array
-            In the joint frame.
+            Motion in the joint frame.
         """
         place, rate = self.levers * motion[:4], self.levers * motion[4:8]
         step, before, rate_before = time - self.time, self.place, self.rate
@@ -176,12 +178,12 @@ def lost_in_a_turn(radius: float) -> float:
 
 
 def largest_turn(radius: float) -> float:
-    """Turn of a step beyond which more is lost than counts, or vibrations may grow, rad."""
+    """Turn of a step, rad, beyond which the loss of angular momentum exceeds `LOST`, or vibrations may grow."""
     return min(math.sqrt(LOST / lost_in_a_turn(radius)), max(GROWING * (1.0 - radius), LEAST_TURN))
 
 
 class TurnWatch:
-    """Watches the sides of one joint that lie on absolute coordinates.
+    """Detection of too large turns per step at sides of one joint that have absolute coordinates.
 
     Parameters
     ----------
@@ -189,7 +191,7 @@ class TurnWatch:
     sides : pair of Side
         Housing and journal.
     solver : solver of Exudyn or None
-        At work; only the turns of implicit ones are watched.
+        The running solver; turns are checked for implicit ones only.
     """
 
     def __init__(self, mbs: exu.MainSystem, sides: tuple[Side, Side], solver: Solver | None) -> None:
@@ -199,12 +201,12 @@ class TurnWatch:
             self.sides = [s for s in sides if s.nodes and mbs.GetNode(s.nodes[0])["nodeType"].startswith("Point")]
 
     def take(self, name: str, time: float) -> None:
-        """Take an accepted state, to which the sides were brought; warn, once, if the step to it turned one too far.
+        """Add an accepted state, for which the sides are updated; warn, once, if a side turned too far in the step.
 
         Parameters
         ----------
         name : str
-            Of the joint.
+            Name of the joint.
         time : float
             s.
         """
@@ -234,7 +236,7 @@ def warn_of_turn(name: str, time: float, turn: float, radius: float) -> None:
 
 
 def warn_of_radius(solver: Solver | None) -> None:
-    """Warn of an integrator that keeps alternating velocities."""
+    """Warn of an integrator with too little damping of alternating velocities, `LARGEST_RADIUS`."""
     if isinstance(solver, exu.MainSolverImplicitSecondOrder) and solver.spectralRadius > LARGEST_RADIUS:
         warn_user(
             f"The time integration has a spectral radius of {solver.spectralRadius:g} (Newmark and TrapezoidalIndex2 "
@@ -246,7 +248,8 @@ def warn_of_radius(solver: Solver | None) -> None:
 
 
 LOGGER = logging.getLogger("exudyn_ehd")
-# Rise from which on oil of constant viscosity describes no film, K; with hardly any outflow it grows without bound.
+# Temperature rise in K above which the summary line gives no number, because the estimate with a constant viscosity is
+# useless there; with hardly any outflow it grows without bound.
 HOTTEST = 100.0
 
 
@@ -261,7 +264,7 @@ def is_on() -> bool:
 
 
 def line(name: str, bearing: JournalBearing, history: JointHistory, reasons: Iterable[str] = ()) -> str:
-    """The line of a joint whose run has ended.
+    """Return the summary line of a joint whose run has ended.
 
     Parameters
     ----------
@@ -269,9 +272,9 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, reasons: Ite
         Name of the joint.
     bearing : JournalBearing
     history : JointHistory
-        With one step or more.
+        History with at least one step.
     reasons : iterable of str
-        Why steps were halved, one for each of them; those of all joints of the run.
+        Reasons why steps were halved, one for each halved step; those of all joints of the run.
     """
     h, time = history, history.time
     text = f"LubricatedJoint '{name}', {h.step_count[-1]} steps to t = {time[-1]:.6g} s"
@@ -298,13 +301,13 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, reasons: Ite
 
 
 def spins(bearing: object, history: JointHistory) -> np.ndarray:
-    """Size (n,) of the relative spin, rad/s; a ball's rows have its angular velocity in three parts."""
+    """Size (n,) of the relative spin, rad/s; for a ball that of its angular velocity."""
     parts = slice(8, 9) if isinstance(bearing, JournalBearing) else slice(6, 9)
     return np.asarray(np.linalg.norm(history.motion[:, parts], axis=1))
 
 
 def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
-    """Effects that the record alone shows to matter and that the bearing leaves out, each with its size."""
+    """Return texts about effects that the bearing omits and that matter by the record alone, each with its size."""
     b, h, spin = bearing, history, spins(bearing, history)
     thinnest, highest = float(np.nanmin(h.minimum_gap)), float(np.nanmax(h.peak_pressure, initial=0.0))
     speed = float(np.max(spin)) * b.journal_radius
@@ -331,11 +334,13 @@ def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
     return [text for text, matters in found.items() if matters]
 
 
-# Void of a starved film over ``1 - smallest gap / mean gap``, and the least one that counts: shares of the volume.
+# Void, as a share of the film's volume, above which a film counts as starved: over ``1 - smallest gap / mean gap``, and
+# at least. Larger: later warnings.
 STARVED, LEAST = 0.6, 0.1
-# Roughness of a good surface, m; surfaces of the smallest bearings are as much finer as these are smaller.
+# Minimum film thickness below which a smooth film causes a warning: in m, the roughness of a good surface; over the
+# clearance, for small bearings, whose surfaces are finer. The smaller one counts.
 GOOD_SURFACE, CLEARANCE_SHARE = 0.2e-6, 0.05
-# Tolerance over the mean force of a run from which on it is told.
+# Newton's absolute tolerance over the mean force of a run, above which a run warns.
 LOOSE = 1e-3
 
 
@@ -361,14 +366,17 @@ def warn_of_starvation(name: str, time: float, lost: float) -> None:
 
 
 def smooth_limit(bearing: JournalBearing) -> float:
-    """Minimum film thickness below which a smooth film is none, m; -inf where the bearing models what touches."""
+    """Minimum film thickness, m, below which a smooth film causes a warning; -inf for bearings with a contact model."""
     if any(getattr(bearing, name, None) is not None for name in ("asperity", "contact")):
         return -math.inf
     return min(GOOD_SURFACE, CLEARANCE_SHARE * bearing.radial_clearance)
 
 
 def warn_of_thin_film(name: str, time: float, gap: float, tilting: str) -> None:
-    """Warn that the film of the joint ``name`` is thinner than its surfaces are rough; ``tilting`` is advised first."""
+    """Warn that the film of the joint ``name`` is thinner than the roughness of good surfaces.
+
+    ``tilting``: advice about tilting, placed first in the message.
+    """
     warn_user(
         f"LubricatedJoint '{name}': at t = {time:.9g} s the minimum film thickness is {1e6 * gap:.3g} um, less than "
         "the roughness of a good surface: real surfaces touch there, and pressure, friction and film are those of "
@@ -379,14 +387,14 @@ def warn_of_thin_film(name: str, time: float, gap: float, tilting: str) -> None:
 
 
 class GridWatch:
-    """Watch of one run for a grid that does not resolve the pressure peak, there where that is highest."""
+    """Check, for one run, whether the grid resolves the pressure peak of the film with the highest peak."""
 
     def __init__(self) -> None:
         self._peak = 0.0
         self._coarse: tuple[float, Resolution] | None = None
 
     def take(self, time: float, peak: float, film: object) -> None:
-        """Take an accepted step's film of a peak pressure, Pa."""
+        """Add the film of an accepted step, which has a peak pressure, Pa."""
         if not (peak > self._peak and isinstance(film, SolvedFilm)):
             return
         if is_judged(film):
@@ -394,7 +402,7 @@ class GridWatch:
             self._coarse = (time, found) if found.is_coarse else None
 
     def tell(self, name: str) -> None:
-        """Warn, once, at the end of the run of the joint ``name``."""
+        """Warn, once, at the end of a run if the grid of the joint ``name`` is too coarse."""
         if self._coarse is not None:
             (time, found), self._coarse = self._coarse, None
             where = f"LubricatedJoint '{name}': at t = {time:.9g} s, at its highest pressure"
@@ -404,9 +412,9 @@ class GridWatch:
 def warn_of_tiny_forces(
     name: str, solver: Solver | None, given: float | None, bearing: object, history: JointHistory
 ) -> None:
-    """Warn where a run with Newton's method has left a share of the forces of the joint ``name``.
+    """Warn if Newton's absolute tolerance is more than a share `LOOSE` of the mean force of the joint ``name``.
 
-    ``given``: the absolute tolerance that was asked for, where the solver has another one.
+    ``given``: absolute tolerance of the settings, if the solver used another one.
     """
     if not isinstance(solver, exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic):
         return

@@ -1,7 +1,7 @@
-"""Exudyn's solvers: settings that joints need, kind and state of the one at work, its user functions.
+"""Exudyn's solvers: settings that joints need, kind and state of the running solver, its user functions.
 
-`StepControl` is what a user asks of the steps. Those that are too coarse for a film are rejected here, through Exudyn's
-own control; `exudyn_ehd.coupling.run.step_size` chooses steps by their error.
+`StepControl` is the user's option for the steps. Steps that are too coarse for a film are rejected here, through
+Exudyn's step control; `exudyn_ehd.coupling.run.step_size` chooses steps by their error.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from exudyn_ehd.status import InputError, require_bool, require_number, require_
 
 Solver: TypeAlias = exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic | exu.MainSolverExplicit
 Stored: TypeAlias = tuple[Solver | None, Solver | None]
-# Before the first run: not even no solver is the same object.
+# Stored solvers before the first run: objects that differ from any solver, and from None.
 NO_RUN: Stored = (cast(Solver, object()), cast(Solver, object()))
 # Spectral radius for films, and Newton's absolute tolerance, N; see `ConfigureSolver`.
 USUAL_RADIUS, ABSOLUTE = 0.6, 1e-8
@@ -36,19 +36,19 @@ def stored_solvers(mbs: exu.MainSystem) -> Stored:
 
 
 def running_solver(before: Stored, now: Stored) -> Solver | None:
-    """The solver at work, from the stored ones at the run before and now; None if it was not stored in ``mbs.sys``.
+    """Return the running solver, by the stored solvers of the previous run and now; None if it is not in ``mbs.sys``.
 
-    A stored solver outlives its run, and one that an exception has ended looks as if it were still at work: what tells
-    is that the object is a new one.
+    A stored solver outlives its run, and after an exception it looks as if it were still running. So the running solver
+    is recognised as a new object.
     """
     changed = [solver for old, solver in zip(before, now, strict=True) if solver is not None and solver is not old]
     working = [solver for solver in changed if not solver.output.finishedSuccessfully]
-    # two new ones: the other was run without this joint being asked, and is not initialised or has stopped its timer
+    # of two new solvers, the other one has run without evaluating this joint: its timer has stopped, or never started
     return min(working, key=lambda solver: solver.timer.total, default=None)
 
 
 def warn_unknown(name: str) -> None:
-    """Warn that steps of the joint ``name`` are taken by a solver that is none of the stored ones."""
+    """Warn that steps of the joint ``name`` are made by a solver that is not stored in ``mbs.sys``."""
     warn_user(
         f"LubricatedJoint '{name}': the solver at work is not in mbs.sys: its films take velocities as they are, which "
         "lets journals drift at coarse steps, and a step without a film ends the run where a smaller one might do. Use "
@@ -79,7 +79,7 @@ def is_finished(solver: Solver | None) -> bool:
 
 
 def require_end(where: str, mbs: exu.MainSystem, solver: Solver | None) -> None:
-    """Raise `InputError` where a system is not as a run of ``solver`` that has come to its end has left it."""
+    """Raise `InputError` unless a system is in the end state of a finished run of ``solver``."""
     time = mbs.systemData.GetTime(CURRENT)
     if solver is not None and is_finished(solver) and time != solver.it.currentTime:
         raise InputError(
@@ -97,26 +97,26 @@ def can_reject_step(solver: Solver | None) -> bool:
     """
     if solver is None or is_explicit(solver) or is_finished(solver) or solver.timer.total >= 0.0:
         return False
-    # iteration data, not the settings: the solver's own copy is what decides
+    # the solver's copy of the data decides, not the settings
     iteration = solver.it
     return bool(iteration.adaptiveStep) and iteration.currentStepSize > iteration.minStepSize * (1.0 + 1e-6)
 
 
 def user_function(mbs: exu.MainSystem, moment: str) -> Any:
-    """The user's own function at a moment of the solver, e.g. ``"PostNewton"``; 0, as Exudyn takes it, for none."""
+    """Return the user's function for a moment of the solver, e.g. ``"PostNewton"``; 0, as in Exudyn, for none."""
     found = getattr(mbs, f"Get{moment}UserFunction")()
     function = found["function"] if isinstance(found, dict) else found
     return function if callable(function) else 0
 
 
 def idle(moment: str) -> Callable[..., Any]:
-    """Return a user function for a moment of the solver that changes nothing."""
+    """Return a user function for a moment of the solver that has no effect."""
     return lambda *_: (0.0, -1.0) if moment == "PostNewton" else True
 
 
 @contextmanager
 def hooked(mbs: exu.MainSystem, moment: str, function: Callable[..., object]) -> Iterator[None]:
-    """Put a function in the place of the user's own at a moment of the solver, within; the user's comes back then.
+    """Context in which a function replaces the user's function for a moment of the solver.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def hooked(mbs: exu.MainSystem, moment: str, function: Callable[..., object]) ->
     moment : str
         As in the names of Exudyn's functions, e.g. ``"PostNewton"``.
     function : callable
-        It gets the function in whose place it stands, which it has to call, before Exudyn's arguments.
+        Function with the replaced function as its first argument, which it must call, and then Exudyn's arguments.
     """
     own = user_function(mbs, moment)
     put = getattr(mbs, f"Set{moment}UserFunction")
@@ -136,7 +136,7 @@ def hooked(mbs: exu.MainSystem, moment: str, function: Callable[..., object]) ->
 
 
 def require_settings(where: str, settings: object) -> None:
-    """Refuse what are no settings of Exudyn."""
+    """Raise `InputError` for an object that is not Exudyn's SimulationSettings."""
     if not isinstance(settings, exu.SimulationSettings):
         raise InputError(
             f"{where}.simulationSettings must be exudyn.SimulationSettings(), got {type(settings).__name__}."
@@ -144,7 +144,7 @@ def require_settings(where: str, settings: object) -> None:
 
 
 def require_time(where: str, settings: exu.SimulationSettings) -> None:
-    """Refuse a run that ends before it starts, and an integrator that lets every vibration grow."""
+    """Raise `InputError` for a run that ends before it starts, and for an integrator that amplifies vibrations."""
     time = settings.timeIntegration
     if not time.endTime > time.startTime:
         raise InputError(
@@ -249,7 +249,7 @@ LARGEST_GAP_CHANGE = 0.25
 
 @dataclass(frozen=True, kw_only=True)
 class StepControl:
-    """Step control of a run: limit the change of the gap in a step, or choose steps by the error that they make.
+    """Step control: limit the change of the gap in a step, or choose the steps of a run by their error.
 
     **Of a joint** (``CreateLubricatedJoint(stepControl=StepControl(largest_gap_change=0.1))``): for journals that fall
     onto a contact. Newton's method may converge for a step in which the journal falls from the centre onto its contact,
@@ -306,7 +306,7 @@ class StepControl:
 
 
 def require_of_joint(where: str, control: object) -> None:
-    """Refuse what is no control of a joint's steps; None is none."""
+    """Raise `InputError` unless ``control`` is a step control of a joint, or None."""
     require_type(where, control, StepControl, type(None))
     if isinstance(control, StepControl) and control.error is not None:
         raise InputError(
@@ -318,7 +318,7 @@ def require_of_joint(where: str, control: object) -> None:
 def require_control(
     where: str, settings: exu.SimulationSettings, control: StepControl | None, *, implicit: bool = True
 ) -> None:
-    """Refuse a control that is none of a run, or a run that has no use for one."""
+    """Raise `InputError` for a step control without ``error``, or for a run that does not support one."""
     require_type(f"{where}.stepControl", control, StepControl, type(None))
     if control is None:
         return
@@ -335,7 +335,7 @@ def require_control(
 
 
 class GapWatch:
-    """A `StepControl` at work on one joint.
+    """Check of the steps of one joint by its `StepControl`.
 
     Parameters
     ----------
@@ -362,13 +362,13 @@ class GapWatch:
         return [self.bore.smallest(trial.motion), math.nan if trial.faces is None else trial.faces.minimum_gap]
 
     def start(self, trial: Trial, film: float | None) -> None:
-        """Remember the gaps at the start of a step; ``film`` is that of a film in a worn or soft bore."""
+        """Store the gaps at the start of a step; ``film``: minimum film thickness in a bore that wears or deflects."""
         bore, faces = self.before = self._gaps(trial)
         self.sizes = [max(bore if film is None else film, self.ranges[0]), max(faces, self.ranges[1])]
 
     def rejects(self, trial: Trial, solver: Solver | None) -> bool:
         """Return whether the step to this state is too coarse and can be repeated."""
-        # not true for a gap that is not finite: the film itself reports that
+        # the comparison is False for a gap that is not finite, which the film reports
         changes = zip(self._gaps(trial), self.before, self.sizes, strict=True)
         too_far = any(abs(now - before) > self.share * size for now, before, size in changes)
         return too_far and is_implicit(solver) and can_reject_step(solver)

@@ -1,4 +1,4 @@
-"""`LubricatedJoint`: what a user has of a joint that `CreateLubricatedJoint` made."""
+"""`LubricatedJoint`, the handle of a joint that `CreateLubricatedJoint` returns to the user."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         super().__init__(mbs, element, numbers)
         self.display = display
         bush = getattr(element, "bush", None)
-        # the element's own does not keep the system alive
+        # unlike the element's copy, this one keeps the system alive
         self.bush = None if bush is None else dataclasses.replace(bush, mbs=mbs)
 
     def __repr__(self) -> str:
@@ -134,7 +134,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         Parameters
         ----------
         liner : ElasticLiner or None, default None
-            Liner to assess elasticity with, for bearings without one; None: a steel ring around the journal.
+            Liner with which elasticity is assessed, for bearings with a rigid bore; None: a steel ring.
         measure_time : bool, default False
             True measures the share of computing time of each effect that is on.
 

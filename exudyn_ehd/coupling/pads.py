@@ -5,8 +5,8 @@ with the pad. Geometry and forces: `exudyn_ehd.joint.static.pads`.
 
 `CreateTiltingPadThrustBearing`: pads that tilt about pivots, each with a film under the collar
 -----------------------------------------------------------------------------------------------
-To a solver the film of a pad is that of a joint between the pad and the shaft with one end face and no film around its
-journal: the pad's face lies at the upper end of the joint's length, under the collar.
+The film of a pad is modelled as a joint between the pad and the shaft, with one end face and no film around its
+journal. The pad's face lies at the upper end of the joint's length, under the collar.
 """
 
 from __future__ import annotations
@@ -62,12 +62,12 @@ class TiltingPadHistory:
     force : (n, 3) array
         Force of all films on the journal, N.
     tilts : (n, k) array
-        Angles of the pads about their pivots, rad. With flexible pivots they follow from positions in which the shifts
-        are the films' forces over the stiffness; the inertia of the pads is omitted.
+        Angles of the pads about their pivots, rad. With flexible pivots they are computed from shifts that equal the
+        films' forces over the stiffness; the inertia of the pads is omitted.
     minimum_gap, peak_pressure : (n,) arrays
-        Of all pads, m and Pa.
+        Minimum film thickness, m, and peak pressure, Pa, of all pads.
     power_loss, friction_torque : (n,) arrays
-        Of all films, W, and N m on the journal.
+        Power loss, W, and friction torque on the journal, N m, of all films.
 
     Examples
     --------
@@ -88,7 +88,7 @@ class TiltingPadHistory:
 
 
 class TiltingPadJoint:
-    """A tilting-pad bearing in a model, from `CreateTiltingPadBearing`: its pads, sums over them, start in balance.
+    """A tilting-pad bearing in a model, from `CreateTiltingPadBearing`: its pads, sums over them, start in equilibrium.
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ class TiltingPadJoint:
         )
 
     def _places(self, motions: np.ndarray, shifts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Journal's positions (n, 2) in the bearing and tilts (k, n) from its places (k, n, 2) in the pads' frames.
+        """Compute the journal's positions (n, 2) and the tilts (k, n) from its positions (k, n, 2) in the pads' frames.
 
         ``shifts`` (k, n): outward displacements of the pads at their pivots.
         """
@@ -174,7 +174,7 @@ class TiltingPadJoint:
         outward = np.einsum("dk,knd->kn", radial, motions) - b.arm
         along = np.einsum("dk,knd->kn", across, motions)
         pivots, tilts = b.arm - b.preload * b.machined_clearance + shifts, np.zeros_like(along)
-        # each round gains a factor of the clearance over R
+        # each iteration reduces the error by a factor of clearance over R
         for _ in range(4):
             position = np.linalg.lstsq(radial.T, pivots + outward * np.cos(tilts) - along * np.sin(tilts))[0].T
             tilts = np.arcsin(((position @ across).T - along * np.cos(tilts)) / outward)
@@ -183,10 +183,10 @@ class TiltingPadJoint:
     def place_in_equilibrium(
         self, *, load: Sequence[float] | np.ndarray, speed: float | None = None
     ) -> TiltingPadResult:
-        """Let the next run start where the films carry a steady load: journal and pads are moved there.
+        """Let the next run start in the equilibrium under a steady load: journal and pads are moved there.
 
-        Call it after Assemble. The journal's node is moved across the axis, and its velocity there set to that of the
-        housing; its spin and its tilt stay. The weight of the pads is left out.
+        Call it after Assemble. The journal's node is moved across the axis, and its velocity across the axis is set to
+        that of the housing; its spin and its tilt do not change. The weight of the pads is omitted.
 
         Parameters
         ----------
@@ -209,7 +209,7 @@ class TiltingPadJoint:
         where, mbs = "TiltingPadJoint.place_in_equilibrium", self.mbs
         require_system(where, mbs, assembled=True, of=f" of bearing '{self.name}'")
         journal = self.pads[0].element.sides[1]
-        # brings the journal's frame to the initial state
+        # updates the journal's frame to the initial state
         self.pads[0].element.motion(mbs, INITIAL)
         data, housing = mbs.systemData, self._housing
         q, q_t = np.array(data.GetODE2Coordinates(INITIAL)), np.array(data.GetODE2Coordinates_t(INITIAL))
@@ -274,8 +274,8 @@ def CreateTiltingPadBearing(
     rotationMatrixAxes : (3, 3) or None, default None
         Frame of the bearing, from whose x the pivots' angles count, as for `CreateLubricatedJoint`.
     axial : Free or Held, default Free()
-        Free: the journal slides along the axis, on which the pads hold nothing. Held: a constraint between housing and
-        journal stops it.
+        Free: the journal slides along the axis, along which the pads carry no force. Held: a constraint between housing
+        and journal prevents this.
     tilt : Free or Held, default Free()
         Free: the films alone carry tilting moments; the pads follow the journal about their pivots' lines only. Held: a
         constraint keeps journal and housing parallel.
@@ -347,7 +347,7 @@ def CreateTiltingPadBearing(
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class NoFilm:
-    """A joint without a film around its journal: the model, which is its own evaluation.
+    """Model of a joint without a film around its journal; it is also its own evaluation.
 
     Attributes
     ----------
@@ -358,7 +358,7 @@ class NoFilm:
     remembers, needs_spin, status, wrench = False, False, Status.CONVERGED, np.zeros(6)
 
     def initial_history(self, motion: np.ndarray) -> History | None:
-        """Return None: there is nothing to remember."""
+        """Return None: there is no memory."""
         return None
 
     def evaluate(
@@ -372,7 +372,7 @@ class NoFilm:
         return np.zeros((6, 10))
 
     def quantities(self) -> dict[str, float]:
-        """Return none."""
+        """Return an empty dict."""
         return {}
 
 

@@ -1,9 +1,9 @@
-"""`ReplaceJoint`: a film in the place of a joint that a model already has; `ReplaceReducedBody`.
+"""`ReplaceJoint`: a film that replaces a joint of a model; `ReplaceReducedBody`.
 
-A joint of two markers with the frames A R (A of the marker, R the joint's ``rotationMarker``) gives all that
-`CreateLubricatedJoint` asks for: the markers are the two sides, the housing's frame with z along the free rotation is
-the joint's, whichever way the journal's axis points. The joint itself stays, inactive and hidden, since deleting it
-would renumber all that comes after it.
+A joint of two markers with the frames A R (A of the marker, R the joint's ``rotationMarker``) has all data for
+`CreateLubricatedJoint`. The markers are the two sides. The joint frame is the housing's frame with z along the free
+rotation, whatever the sense of the journal's axis. The old joint stays in the model, inactive and hidden, since
+deleting it would renumber all later objects.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def ReplaceJoint(
             )
     markers, frames = zip(*(_side(mbs, joint, k, where) for k in (0, 1)), strict=True)
     axes = [frame[:, free] for frame in frames]
-    # of either sense, as for Exudyn: the film takes the housing's
+    # of either sense, as in Exudyn: the film has that of the housing
     if np.linalg.norm(np.cross(*axes)) > ROUNDING:
         raise InputError(
             f"{where}: the axes of its two markers, {axes[0]} and {axes[1]}, must be parallel in the reference "
@@ -125,7 +125,7 @@ def ReplaceJoints(
     types: Sequence[str] = TYPES,
     **options: Any,
 ) -> dict[int, LubricatedJoint]:
-    """Put films in the places of all active revolute and cylindrical joints of a model; see `ReplaceJoint`.
+    """Replace all active revolute and cylindrical joints of a model by films; see `ReplaceJoint`.
 
     Parameters
     ----------
@@ -231,7 +231,7 @@ def ReplaceReducedBody(mbs: exu.MainSystem, objectNumber: Index) -> Index:
 
 
 def _joint(mbs: exu.MainSystem, number: Index) -> tuple[Data, str]:
-    """Data of the joint, and how messages call it."""
+    """Data of the joint, and its name for messages."""
     index = f"exu.ObjectIndex({number if isinstance(number, int) else '...'})"
     require_type("ReplaceJoint.objectNumber", number, ObjectIndex, hint=f"give {index}, as Exudyn returns it.")
     if not 0 <= int(number) < mbs.systemData.NumberOfObjects():
@@ -253,7 +253,7 @@ def _joint(mbs: exu.MainSystem, number: Index) -> tuple[Data, str]:
 
 
 def _free_name(mbs: exu.MainSystem, joint: Data, number: int) -> str:
-    """Name of the film by that of the joint, and by its number where another joint has the same name."""
+    """Name of the film: that of the joint, with its number if another joint has the same name."""
     name = f"film of {joint['name']}"
     return f"{name} (object {number})" if name in {known.name for known in joints_of(mbs)} else name
 

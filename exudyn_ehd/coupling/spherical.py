@@ -32,7 +32,8 @@ from exudyn_ehd.joint.spherical.steady import SphericalResult, audit_ball, resul
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, require_type, require_vector
 
-# Distance of the centres beyond which no film is thin, share of the ball's radius.
+# Distance of the centres of ball and socket, over the ball's radius, beyond which a step is an error: the film is not
+# thin.
 FARTHEST = 0.1
 _WHERE = "CreateLubricatedSphericalJoint"
 _QUANTITIES = (
@@ -145,7 +146,7 @@ class SphericalHistory(FilmSteps):
 
 
 def spherical_history(rows: JointHistory) -> SphericalHistory:
-    """A ball's history from the record that it shares with journals, whose moments are about the socket's centre."""
+    """Convert a record, in the format of journals with moments about the socket's centre, to a ball's history."""
     place, velocity, spin = rows.motion[:, :3], rows.motion[:, 3:6], rows.motion[:, 6:9]
     return SphericalHistory(
         place=place,
@@ -157,7 +158,7 @@ def spherical_history(rows: JointHistory) -> SphericalHistory:
 
 
 class SphericalDisplay(FilmDisplay):
-    """The socket's patch in the colours of the pressure of the last accepted step."""
+    """Graphics of the socket's patch, in the colours of the pressure of the last accepted step."""
 
     def graphics(self, mbs: exu.MainSystem, itemNumber: int) -> list[Data]:
         """User function of Exudyn: graphics data of the state that the renderer shows, global coordinates."""
@@ -211,7 +212,7 @@ class LubricatedSphericalJoint(Joint):
         return spherical_history(super().history)
 
     def film(self) -> SphericalResult:
-        """The film at the last accepted state; ``film().plot_pressure()`` draws it.
+        """Return the film at the last accepted state; ``film().plot_pressure()`` draws it.
 
         Raises
         ------
@@ -223,11 +224,11 @@ class LubricatedSphericalJoint(Joint):
         self._require_end("film")
         found = self.element.steps.look_at_accepted(self.mbs)[1].evaluation
         assert isinstance(found, SphericalEvaluation)
-        # of the last evaluation, which this is: no solver runs
+        # valid, because this is the model's last evaluation
         return result_of(found, f"{type(self).__name__}.film")
 
     def audit(self) -> Audit:
-        """Find the effects that mattered in the accepted steps, and those of them that a ball's film omits; print it.
+        """Find the effects that mattered in the accepted steps, and important ones that a ball's film omits; print it.
 
         The films at the worst recorded steps are evaluated again in a separate model: the joint does not change.
         See `exudyn_ehd.joint.spherical.steady`.

@@ -2,10 +2,11 @@
 
 Module map
 ----------
-solved_film  one evaluation as a record: what all below read
+solved_film  record of one evaluation, from which all modules below read
 plain_film   a film without further effects in one kernel
 step_rates   rates of a step that agree with its positions
-step_error   what the steps of a run miss in the gap
+step_error   error of the gap by the time steps of a run
+jump_error   error of a step within which the load jumps
 bore         shapes of an elastic bore and their balance
 tangent      derivatives of the wrench
 heat         temperature over time
@@ -13,6 +14,6 @@ thrust       films on both end faces
 model        from a bearing's description to its evaluation
 balance      steady films: their temperature, their position under a load
 spherical    a ball in its socket
-audit        which effects mattered
+audit        effects that mattered, and omitted ones that would have
 static       steady films, equilibrium, Stribeck curve
 """

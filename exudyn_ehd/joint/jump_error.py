@@ -1,19 +1,20 @@
 """Error of a step within which the load on a film jumps.
 
-The step is integrated again with the film's force between its ends.
+To estimate it, the step is integrated again in small parts, with a film force interpolated between its ends.
 
-Behind a jump a film is another one: its rupture line moves with the direction of the squeeze, and its damping falls as
-it lifts. Known are the forces F0 and F1 at both ends of the step, their stiffness K = -dF/dp and damping D = -dF/dv.
-With the share s of the way from the pose and rate (p0, v0) to (p1, v1) the force between them is
+After a jump of the load the film differs: its rupture line moves with the direction of the squeeze, and its damping
+falls as the journal lifts. At both ends of the step the forces F0 and F1, the stiffness K = -dF/dp and the damping
+D = -dF/dv are known. With the fraction s of the path from the pose and rate (p0, v0) to (p1, v1) the force is
 
     F = (1 - s) F0(p, v) + s F1(p, v) + s (1 - s) ((1 - s) g1 - s g0 - (1 - 2 s) (F1 - F0)),
 
-with Fi(p, v) = Fi - Ki (p - pi) - Di (v - vi) and gi = -Ki (p1 - p0) - Di (v1 - v0). On the straight way between the
-ends this is Hermite's cubic. s is the projection of (p, 2 h v), see `RATE_LEVER`.
+with Fi(p, v) = Fi - Ki (p - pi) - Di (v - vi) and gi = -Ki (p1 - p0) - Di (v1 - v0). On the straight path between the
+ends this is Hermite's cubic. s is the projection of (p, 2 h v) on this path, see `RATE_LEVER`.
 
-The motion M dv/dt = F + L(t), dp/dt = v starts from (p0, v0). The load L goes from L0 to L1 evenly in a share of the
-step, or at once, around the time for which its mean is the one that is known; what no such time reaches is added to
-both. The error of the step is (p1, v1) less the end of this motion. No film is evaluated.
+The motion M dv/dt = F + L(t), dp/dt = v starts from (p0, v0). The load L changes from L0 to L1 linearly within a part
+of the step, or at once. The time of this change is such that L has the known mean; if no time within the step gives
+this mean, the difference is added to L0 and L1. The error of the step is (p1, v1) minus the end of this motion. No film
+is evaluated.
 """
 
 from __future__ import annotations
@@ -24,20 +25,21 @@ import numpy as np
 
 from exudyn_ehd.status import SMALL
 
-# Share of a step in each stage of backward Euler: the one for which both, extrapolated, are of second order.
+# Fraction of a step in each of two stages of backward Euler, whose extrapolation is then of second order.
 GAMMA = 1.0 - math.sqrt(0.5)
-# Time, over the step, with which rates count beside poses in the way between the ends. 332 errors above 2 % by random
-# jumps (seeds below 4130 of `tests/mechanisms/test_load_jumps.py`) are told at 0.69 to 1.7 of their size; without
-# iterations for s at 0.59 to 1.9 with 1.4 to 4. Less misses how the rupture line moves with the rate (0.25: 0.29 to
-# 2.8), more how the film lifts (16: 0.72 to 2.3).
+# Time, over the step, by which rates are multiplied to measure the path of poses and rates. Measured on 332 errors
+# above 2 % by random jumps (seeds below 4130 of `tests/mechanisms/test_load_jumps.py`): estimate over error 0.69 to
+# 1.7; without iterations for s 0.59 to 1.9 at values from 1.4 to 4. Smaller values miss how the rupture line moves with
+# the rate (0.25: 0.29 to 2.8), larger ones how the journal lifts (16: 0.72 to 2.3).
 RATE_LEVER = 2.0
-# Parts before the change of the load, in it and behind it. Without iterations for s errors are told at 0.50 to 2.1 with
-# 4, 0.66 to 1.7 with 8, and 0.69 to 1.7 with 32.
+# Number of parts before, during and after the change of the load, each. Larger: slower. Estimate over error without
+# iterations for s: 0.50 to 2.1 with 4 parts, 0.66 to 1.7 with 8, 0.69 to 1.7 with 32.
 PARTS = 8
-# Iterations for s in a stage. With one, a jump that turns the film within a part of the step is missed. With 1, 2 and 3
-# the logarithm of the estimate over the error has a standard deviation of 0.084, 0.073 and 0.072 (the same errors).
+# Iterations for s in a stage. With one, a jump that turns the force of the film within a part of the step is missed.
+# With 1, 2 and 3 the logarithm of estimate over error has a standard deviation of 0.084, 0.073 and 0.072 (the same
+# errors).
 ITERATIONS = 3
-# Determinant of a matrix scaled to 1, above which it resists motion in all directions.
+# Determinant of a matrix whose largest entry is scaled to 1, above which it resists motion in all directions.
 RESISTS = 1e-12
 
 
@@ -53,7 +55,7 @@ def errors_of_jumps(
     pose: np.ndarray,
     rate: np.ndarray,
 ) -> np.ndarray:
-    """Errors of pose and rate (n, 2 k) that steps with a jump of the load make, zero where nothing resists.
+    """Errors of pose and rate (n, 2 k) by steps with a jump of the load; zero where nothing resists the motion.
 
     Parameters
     ----------
@@ -64,18 +66,18 @@ def errors_of_jumps(
     M : (n, k, k) array
         Mass.
     force, load : (2, n, k) arrays
-        Of the film, and on it, at both ends.
+        Force of the film, and load on it, at both ends.
     beyond : (n, k) array
         Mean load within the step less the mean of its ends.
     lasting : (n,) array
-        Share of the step in which the load changes.
+        Fraction of the step in which the load changes.
     pose, rate : (2, n, k) arrays
-        At both ends.
+        Pose and rate at both ends.
     """
     h, change = step[:, None], load[1] - load[0]
     square = np.sum(change * change, axis=1)
     share = 0.5 - np.sum(beyond * change, axis=1) / np.where(square > 0.0, square, 1.0)
-    # a film without mass divides by no zero where no share of the step vanishes
+    # no part of the step may vanish: without mass its matrix would be singular
     share = np.clip(share, 1.5 * SMALL, 1.0 - 1.5 * SMALL)[:, None]
     changing = np.clip(lasting[:, None], SMALL, 2.0 * np.minimum(share, 1.0 - share) - 2.0 * SMALL)
     before, after = load + beyond - (0.5 - share) * change
@@ -88,7 +90,7 @@ def errors_of_jumps(
     idle = np.where(stiff, 0.0, np.eye(pose.shape[2]))
 
     def stage(p: np.ndarray, v: np.ndarray, h: np.ndarray, outer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Backward Euler, with s by iteration."""
+        """One stage of backward Euler, in which s is found by iteration."""
         end, rate_of_end = p, v
         for _ in range(ITERATIONS):
             gone = np.sum(np.concatenate([end - pose[0], rate_of_end - rate[0]], axis=1) * way, axis=1)
@@ -114,7 +116,7 @@ def errors_of_jumps(
 
 
 def extrapolated(once: np.ndarray, twice: np.ndarray) -> np.ndarray:
-    """Result of second order from the results behind one stage and behind both."""
+    """Result of second order from the results after one stage and after both."""
     return (1.0 + math.sqrt(2.0)) * twice - math.sqrt(2.0) * once
 
 

@@ -1,7 +1,7 @@
 """A plain film with its loads in one kernel: rigid surfaces, an oil of constant viscosity, Swift-Stieber's condition.
 
-It calls what `exudyn_ehd.joint.model.rigid.BearingModel.evaluate` calls one by one for any film. On small grids those
-calls from Python take longer than what they call.
+`exudyn_ehd.joint.model.rigid.BearingModel.evaluate` calls the same kernels one by one for any film. On small grids the
+calls from Python take longer than the kernels.
 """
 
 from __future__ import annotations
@@ -44,9 +44,10 @@ def is_plain(parts: FilmParts) -> bool:
 def solve_plain(
     parts: FilmParts, scales: Scales, motion: np.ndarray, known: np.ndarray, step: float
 ) -> tuple[SolvedFilm | None, int]:
-    """The film of a motion (10,), from the one before if there is one, and the number of linear solves.
+    """Solve the film of a motion (10,), and return it with the number of linear solves.
 
-    None where there is no gap, or no film found. ``known`` (3,): scaled pressures at both ends and in the cavity.
+    The previous film is the initial guess. The film is None if the gap is closed or no solution was found. ``known``
+    (3,): scaled pressures at both ends and in the cavity.
     """
     s = parts.solver
     y, line, work, g = s.system, s.line, s.work, parts.grid
@@ -101,14 +102,12 @@ def solve_plain(
 
 
 @njit(cache=True, nogil=True)
-def _plain_film(
-    motion, scale, known, sizes, kinds, normals, links, weight, active, film, columns, size, work, out
-):  # fmt: skip
-    """Returns (end of `solve_film`, number of unknowns, smallest gap, integral of the Couette shear, s_theta).
+def _plain_film(motion, scale, known, sizes, kinds, normals, links, weight, active, film, columns, size, work, out):
+    """Return (end of `solve_film`, number of unknowns, smallest gap, integral of the Couette shear, s_theta).
 
-    Without a gap there are -1 steps.
+    If the gap is closed, the number of steps is -1.
 
-    ``kinds``: whether there is a squeeze, whether the line lies inside the cells, and whether the start is warm;
+    ``kinds``: whether there is a squeeze, whether the rupture line lies inside the cells, whether the start is warm;
     ``columns``: `ColumnLine` or None; ``out`` (18,): wrench, integrals of the pressure, scaled pose and rates.
     """
     force, shear, radius, half_length, cavity_shear = sizes
@@ -122,7 +121,7 @@ def _plain_film(
         out[10 + q] = motion[q] * scale[q]
     pose, rate, integrals = out[10:14], out[14:], out[6:10]
     smallest = rigid_gaps(pose, rate, squeeze, at, half_length, mesh[2][-1] != 0.0, H, HF, H_t)
-    # not where motions are not finite
+    # the comparison is False for gaps that are not finite
     if not (smallest > 0.0 and np.isfinite(vx + vz + rate[0] + rate[1] + rate[2] + rate[3])):
         return (False, False, -1, size[1], size[2]), size[1], smallest, 0.0, 0.0
     for i in range(P.shape[0]):

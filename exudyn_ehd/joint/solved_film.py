@@ -1,8 +1,8 @@
-"""One solved film as a record: the state that went in, the fields that came out and the loads they make.
+"""Record of one solved film: its input state, its fields and its loads.
 
-Grouped by lifetime: `FilmParts` lasts as long as a model, `Scales` as long as a temperature, `SolvedFilm` until the
-next evaluation, because the film solver keeps links, factor and most fields in buffers of its own. Whatever reads a
-film takes this record and nothing else.
+The parts are grouped by lifetime. `FilmParts` lasts as long as a model, `Scales` as long as the temperature is the
+same. `SolvedFilm` is valid until the next evaluation, because links, factor and most fields are in the film solver's
+buffers. Functions that need a film take this record as their only argument for it.
 
 Joint frame: origin O on the bearing's mid-plane, z = bearing axis, fixed in the housing. The motion of the journal in
 it is
@@ -36,32 +36,34 @@ from exudyn_ehd.film.surfaces.contact import Contact, slip
 
 # Entries of the motion of two rigid surfaces; the coordinates and rates of a flexible bore follow them.
 MOTION_SIZE = 10
-# Shares of the clearance. Eccentricity up to which a journal is at the centre: larger than the round-off of a position
-# of 1 m in a clearance of 1 um. Eccentricity of the films beside it, by which K and C differ from their limits.
+# Eccentricities over the clearance. CENTRE: up to it a journal counts as central; it is larger than the round-off of a
+# position of 1 m in a clearance of 1 um. BESIDE: eccentricity of the films slightly off the centre that replace it;
+# relative error of their K and C.
 CENTRE, BESIDE = 1e-9, 1e-6
-# Largest difference of K or C between a direction and the mean of all, over the mean, up to which that is given; on few
-# columns n 2 / n. Bearings that are the same in all directions have at most 0.12 on 17 columns, 0.057 on 31, 0.023 from
-# 48 on; an axial groove of 0.3 rad at the cavity pressure over two thirds of the length has 0.16.
+# Largest difference between K or C in one direction and their mean over directions, over the mean, up to which the mean
+# counts as stiffness and damping at the centre; on n columns at least 2 / n. Larger: bearings that are not the same in
+# all directions pass. Measured: bearings that are the same in all directions at most 0.12 on 17 columns, 0.057 on 31,
+# 0.023 on 48 and more; an axial groove of 0.3 rad at the cavity pressure over two thirds of the length 0.16.
 LARGEST_SPREAD = 0.05
 
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """State that a bearing keeps between accepted steps; absent effects have None.
+    """State of a bearing that is kept from one accepted step to the next; None for absent effects.
 
     Attributes
     ----------
     void : (n, m) array or None
         Scaled gap less content (fill times gap / c) at the vertices (mass-conserving closures).
     mass : (n, m) array or None
-        Scaled oil that the flows have brought there. Flows and mass balance to rounding; mass and content differ by
-        what `exudyn_ehd.film.solvers.solver.FilmSolver.keep` says. No film depends on it.
+        Scaled oil at the vertices as the sum of all flows. It balances the flows to round-off and differs from the
+        content as `exudyn_ehd.film.solvers.solver.FilmSolver.keep` explains. No film depends on it.
     outflow : (3, n, m) array or None
         Fields of `exudyn_ehd.film.reynolds.links.outflow_of` for the step (mass-conserving closures).
     wear : (n, m) array or None
         Scaled wear depth of the bore.
     temperature : float, (n, m) array or None
-        Film temperature, K; (n, m + k) with that of conducting walls behind it, see `exudyn_ehd.joint.heat.walls`;
+        Film temperature, K; (n, m + k) followed by those of conducting walls, see `exudyn_ehd.joint.heat.walls`;
         (n, 4 m + k) with two temperatures across the film, see `exudyn_ehd.joint.heat.across`.
     deflection : (n, m) array or None
         Scaled deflection of an elastic liner.
@@ -70,8 +72,8 @@ class History:
     sump : float or None
         Temperature of the sump that feeds the film, K.
     leaving : (2,) array or None
-        Temperature of the oil that leaves at the lower and at the upper end, K (a temperature field beside films on end
-        faces).
+        Temperature of the oil that leaves at the lower and at the upper end, K; only with a temperature field and films
+        on end faces.
     """
 
     void: np.ndarray | None = None
@@ -98,11 +100,11 @@ class ContactFields:
     friction : list of (float, float)
         Boundary friction coefficient and transition speed (m/s) of every contact.
     presses_below : float
-        Scaled gap from which on no contact presses.
+        Scaled gap above which no contact has a pressure.
     P, slope : lists of (n, m) arrays
         Pressure of every contact, Pa, and its derivative with respect to the scaled gap.
     integrals : (contacts, 5) array
-        Of every contact's pressure times `FilmGrid.moments`.
+        Integrals of every contact's pressure times `FilmGrid.moments`.
     """
 
     def __init__(self, shape: tuple[int, int], laws: list[Contact]) -> None:
@@ -115,7 +117,7 @@ class ContactFields:
         self.acting = False
 
     def press(self, H: np.ndarray, smallest: float) -> ContactFields | None:
-        """Set the pressures at the true gap H (n, m), scaled; None where the surfaces are too far apart for any."""
+        """Set the pressures at the true gap H (n, m), scaled; return None if the smallest gap is too large for any."""
         if smallest < self.presses_below:
             self.acting = True
             for law, P, slope in zip(self.laws, self.P, self.slope, strict=True):
@@ -129,9 +131,9 @@ class ContactFields:
 
 
 class LimiterFields:
-    """Derivatives of the film's gap to the true gap, at vertices and links, as `GapLimiter.limit` gives them.
+    """Derivatives of the film's gap to the true gap, at vertices and links, from `GapLimiter.limit`.
 
-    ``gap``, ``rate`` at the vertices and ``link`` are the true ones (n, m).
+    ``gap`` and ``rate`` (n, m) are the true gap and its rate at the vertices, ``link`` the true gap on the links.
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:
@@ -142,30 +144,31 @@ class LimiterFields:
 
 @dataclass(eq=False, kw_only=True)
 class FilmParts:
-    """Parts of a bearing model that stay the same objects from evaluation to evaluation.
+    """Parts of a bearing model that are the same objects in all evaluations.
 
     Attributes
     ----------
     bearing : JournalBearing
     grid : FilmGrid
     solver : FilmSolver
-        Holds gaps, links, factor and active set of the last evaluation.
+        Film solver, whose buffers contain gaps, links, factor and active set of the last evaluation.
     liner : LinerFilm or None
-        The solver's, on an elastic liner.
+        The solver's elements on an elastic liner.
     supply : SupplyMap or None
     mixing : list of (n, m) bool arrays
-        Vertices of the areas between which oil mixes: supply areas, or grooves between arcs.
+        Vertices of the areas in which oil mixes: supply areas, or grooves between arcs.
     contacts, limiter : buffers or None
     half_length : float
         Half the bearing's length over the reference length.
     pose_scale, motion_scale : (4,), (10,) arrays
-        Scaled pose per pose; (scaled pose, scaled rates, vx, vz) per motion.
+        Factors from pose to scaled pose, and from motion to (scaled pose, scaled rates, vx, vz).
     flow_scale : float
         m3/s per scaled flow.
     uneven_drag : bool
-        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.patir_cheng`.
+        True if a pressure gradient exerts different shear forces on both surfaces; see
+        `exudyn_ehd.film.surfaces.patir_cheng`.
     evaluations : int
-        Number of the model's evaluations, so that a record knows whether the buffers still are its own.
+        Number of the model's evaluations; by it a record detects that the buffers contain another film.
     """
 
     bearing: JournalBearing
@@ -189,9 +192,9 @@ class Scales(NamedTuple):
 
     pressure, force, shear : Pa, N, and N s/m of Couette shear
     ends : (2,) array, pressures at both ends
-    cavity : the cavity's pressure
-    edges : (2 k,) array, of every arc minus the pressure at its leading edge and that at its trailing edge; None where
-        all are 0
+    cavity : cavity pressure
+    edges : (2 k,) array; for every arc minus the pressure at its leading edge, then the pressure at its trailing edge;
+        None if all are 0
     """
 
     pressure: float
@@ -203,9 +206,9 @@ class Scales(NamedTuple):
 
 
 class JournalMotion(NamedTuple):
-    """Motion (10,) in SI units, behind it a flexible bore's.
+    """Motion (10,) in SI units, followed by the coordinates and rates of a flexible bore.
 
-    Scaled pose (4,) and rates (4,); spin, rad/s, and axial speed, m/s.
+    Also the scaled pose (4,) and rates (4,), the spin, rad/s, and the axial speed, m/s.
     """
 
     motion: np.ndarray
@@ -225,10 +228,10 @@ class ExtraGap(NamedTuple):
 
 
 class BoreState(NamedTuple):
-    """A flexible bore.
+    """State of a flexible bore.
 
-    Coordinates (k,) and rates, its scaled displacement (n, m), and the loads (k,) on it, N, nan without a film. With an
-    elastic journal the displacement is what both surfaces open the gap by.
+    Coordinates (k,) and rates, scaled displacement (n, m), and loads (k,) on the bore, N, nan without a film. With an
+    elastic journal the displacement is the opening of the gap by both surfaces.
     """
 
     coordinates: np.ndarray
@@ -241,12 +244,12 @@ class Loads(NamedTuple):
     """Loads of a film on the journal.
 
     wrench : (6,) array, N and Nm, force and moment about O, contacts included
-    contact : (6,) array, the friction of the contacts in it
+    contact : (6,) array, part of the wrench by friction of the contacts
     integrals : (4,) array, scaled pressure times cos, sin, z cos, z sin
     couette : scaled integral of the Couette shear
     s_theta : scaled integral of the pressure flow's shear along theta
     recess : shear of the oil in supply areas, which is part of the Couette shear; None without any
-    drag : weights (2, n, m) of the pressures in the integrals of uneven drag; None where both surfaces share it alike
+    drag : weights (2, n, m) of the pressures in the integrals of uneven drag; None if both surfaces have equal shares
     """
 
     wrench: np.ndarray
@@ -261,8 +264,8 @@ class Loads(NamedTuple):
 class FacesHeat(NamedTuple):
     """Heat of the films on end faces, W, and oil that they take in, m3/s.
 
-    inner : (2,) array, at the inner radius of the lower and of the upper face, 0 without one
-    outer : at the outer radii
+    inner : (2,) array, intake at the inner radius of the lower and of the upper face, 0 without a face
+    outer : intake at the outer radii
     """
 
     heat: float
@@ -271,22 +274,22 @@ class FacesHeat(NamedTuple):
 
 
 class SolvedFilm(NamedTuple):
-    """The film of one evaluation that found one; a tuple, because it is made in every evaluation.
+    """Solved film of one evaluation; a tuple, because tuples are made fast and every evaluation makes one.
 
     Attributes
     ----------
     parts : FilmParts
     grid, solver : FilmGrid, FilmSolver
-        Those of ``parts``; the solver's buffers hold gaps, links and factor of this film.
+        Grid and solver of ``parts``; the solver's buffers contain gaps, links and factor of this film.
     scales : Scales
     journal : JournalMotion
     history, step : History or None, float
-        At the start of the step, and the time since then, s.
+        History at the start of the step, and the time since then, s.
     temperature : float, (n, m) array or None
-        That the film was solved with, K.
+        Temperature, K, with whose viscosity the film was solved.
     extra : ExtraGap or None
     pressing, limited : buffers or None
-        Those of ``parts``, if the surfaces were close enough for contacts and limiter to act.
+        Buffers of ``parts`` for contacts and limiter; None if the gaps are too large for them to act.
     oil : OilFields
     loads : Loads
     minimum_gap : float
@@ -294,11 +297,11 @@ class SolvedFilm(NamedTuple):
     bore : BoreState or None
         None for a rigid bore.
     serial : int
-        ``parts.evaluations`` at this evaluation.
+        Value of ``parts.evaluations`` at this evaluation.
     walls : Walls or None
-        None where no wall conducts.
+        None if no wall conducts.
     beside : FacesHeat or None
-        Films on end faces that take part in the balance of heat.
+        Heat of films on end faces, which takes part in the heat balance.
     """
 
     parts: FilmParts
@@ -321,12 +324,12 @@ class SolvedFilm(NamedTuple):
     beside: FacesHeat | None = None
 
     def require_current(self) -> None:
-        """Raise RuntimeError if the buffers belong to another evaluation by now."""
+        """Raise RuntimeError if the buffers contain the film of a later evaluation."""
         if self.parts.evaluations != self.serial:
             raise RuntimeError("Evaluation: the model has evaluated another state since; evaluate this state again.")
 
     def shear_by_unknowns(self) -> csr_matrix | None:
-        """Derivative (n m, n m) of the viscosity ratio to the unknowns around; None where it has none."""
+        """Derivative (n m, n m) of the viscosity ratio to the unknowns of nearby vertices; None if it is zero."""
         if self.oil.ratio_g is None:
             return None
         along, across = (
@@ -335,19 +338,19 @@ class SolvedFilm(NamedTuple):
         return csr_matrix((along + across) @ diags(self._pressures().ravel()))
 
     def gather_shear(self, weights: np.ndarray) -> np.ndarray:
-        """Transpose of `shear_by_unknowns`: sums (n, m) by the unknowns; weights (2, n, m) include ``ratio_g``."""
+        """Transpose of `shear_by_unknowns`: sums (n, m) for the unknowns; weights (2, n, m) include ``ratio_g``."""
         return self._thinning().gather(weights) * self._pressures()
 
     def _thinning(self) -> ShearThinning:
         return next(e for e in self.solver.flux_effects if isinstance(e, ShearThinning))
 
     def _pressures(self) -> np.ndarray:
-        """1 where the unknown is a pressure, 0 where oil has cavitated (n, m)."""
+        """Field (n, m): 1 where the unknown is a pressure, 0 where it is a fill."""
         s = self.solver
         return (s.work.active | self.grid.fixed).astype(float) if s.closure.conserves_mass else s.ones
 
     def share(self) -> np.ndarray:
-        """Share of a full film's shear that acts at each vertex (n, m)."""
+        """Shear at each vertex over that of a full film (n, m)."""
         return shear_share(self.solver.system, self.solver.work.active, self.solver.closure)
 
     def slip(self, transition_speed: float) -> tuple[np.ndarray, np.ndarray]:
@@ -356,9 +359,9 @@ class SolvedFilm(NamedTuple):
 
     @property
     def is_central(self) -> bool:
-        """Return whether a film that may rupture lies at the exact centre and presses nowhere."""
+        """Return whether the journal is at the exact centre of a film that may rupture, with no pressure anywhere."""
         w, cavity, source = self.journal, self.scales.cavity, CENTRE * abs(self.journal.omega)
-        # most journals leave here
+        # most films return here
         if abs(w.pose[0]) > CENTRE or np.abs(w.pose).max() > CENTRE or np.abs(w.rate).max() > source:
             return False
         if not self.solver.ruptures or isinstance(self.parts.bearing.inlet, MaximumGap) or self.grid.edges.size:

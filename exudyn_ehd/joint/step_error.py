@@ -1,51 +1,51 @@
-"""Error of the gap by the steps of a run, from the accepted steps alone.
+"""Error of the gap by the time steps of a run, estimated from the accepted steps alone.
 
-A film has no inertia: in balance with its load it gives the journal's pose a rate, dp/dt = f(p, t), and a time
-integration has to add these rates up. The rates r that the film was told in the last three states tell what a step h
-has missed: its displacement less the integral of the parabola through them,
+A film has no inertia. In balance with its load it gives the journal's pose a rate, dp/dt = f(p, t), which the time
+integration integrates. The local error of a step h is its displacement minus the integral of the parabola through the
+rates r that the film got in the last three states,
 
     l = p1 - p0 - (r0 + r1) h / 2 + [r_1, r0, r1] h^3 / 6
 
-with the second divided difference in brackets; the error of the parabola is one order smaller. The momentum that a step
-has missed follows in the same way from the velocities v of the bodies and from the accelerations a that the equations
-of motion demand at accepted states. Newmark's formulas carry others along.
+with the second divided difference in brackets; the error of the parabola is one order smaller. The local error of the
+momentum follows in the same way from the velocities v of the bodies and from accelerations a. These are the
+accelerations that satisfy the equations of motion at accepted states; those of Newmark's formulas differ from them.
 
     m = M (v1 - v0 - (a0 + a1) h / 2 + [a_1, a0, a1] h^3 / 6)
 
-A load L on the film that jumps within a step breaks the parabolas. Where the load is a function of time, its mean
-within the step is known: it exceeds the mean of both ends by s d, with the departure d of L from the line through the
-two states before, and the offset s (`exudyn_ehd.coupling.element.outer_load`), 1/2 - u for a jump at the share u of
-the step. Such a step, and the one behind it, is integrated again with the film's force between both ends
-(`exudyn_ehd.joint.jump_error`). That takes the place of l and m.
+The parabolas do not hold if a load L on the film jumps within a step. If the load is a function of time, its mean
+within the step is known. It exceeds the mean of both ends by s d, with the deviation d of L from the line through the
+two states before, and the offset s (`exudyn_ehd.coupling.element.outer_load`). For a jump at the fraction u of the
+step, s = 1/2 - u. Such a step, and the one after it, is integrated again with the film's force between both ends
+(`exudyn_ehd.joint.jump_error`). The result replaces l and m.
 
 Errors e of the pose follow the equation of motion of the journal in its film, under the same load,
 
     M d2e/dt2 + D de/dt + K e = 0,
 
-translations and tilts each by themselves (of a ball three translations), with damping D = -dF/dr and stiffness
-K = -dF/dp of Newton's last iteration and the mass M that the film feels (`exudyn_ehd.coupling.element.outer_load`).
-No film is solved for it. It is integrated by two stages of backward Euler, of second order and L-stable, so that M may
-vanish. Each step adds l and m in its middle, with the mean of D at both ends. The error of the gap is |e| at the end of
-the journal where it is larger. A liner's deflection w goes into the film by its difference quotient, of first order:
-dw/dt of the parabola through the last three states less (w1 - w0) / h, times h, is a step's further error, along the
-direction of the peak, unless the peak jumps.
+separately for translations and for tilts (for a ball: three translations). Damping D = -dF/dr and stiffness K = -dF/dp
+are those of Newton's last iteration; M is the mass that acts on the film (`exudyn_ehd.coupling.element.outer_load`). No
+film is solved for it. The equation is integrated by two stages of backward Euler, of second order and L-stable, so that
+M may be zero. Each step adds l and m in its middle, with the mean of D at both ends. The error of the gap is the larger
+|e| of both ends of the journal. The rate of a liner's deflection w enters the film as a difference quotient, of first
+order. Its error adds to the error of a step, along the direction of the peak, unless the peak jumps: h times the
+difference of dw/dt, by the parabola through the last three states, and (w1 - w0) / h.
 
-Of impacts, and of loads that are set from step to step, no accepted state tells the place u. The integration takes
-them to be in the middle of the step. For a u anywhere in it the impulse has a standard deviation of h |d| / sqrt(12),
-and the variance P of (e, de/dt) grows by that. The error of the gap is then the root of |e|^2 and the trace of P. That
-is within 0.5 to 2.5 times the error unless the jump lies within 0.12 h of the middle. d is what departs from the line
-through the two states before, if it does so at once. Behind a jump it is what departs from the line before it, if that
-is less: so a pulse has two jumps.
+For impacts, and for loads that are set from step to step, u is unknown. The integration assumes the middle of the step.
+For a uniformly distributed u the impulse has a standard deviation of h |d| / sqrt(12), which adds to the variance P of
+(e, de/dt). The error of the gap is then the root of |e|^2 plus the trace of P. This is 0.5 to 2.5 times the error
+unless the jump lies within 0.12 h of the middle. d is the deviation from the line through the two states before, if
+this deviation is sudden. After a jump, the deviation from the line before the jump is used if it is smaller: so a pulse
+has two jumps.
 
-Of 416 errors above 2 % by random jumps, ramps, pulses and knocks of loads that are functions of time, all are told at
-0.69 to 1.8 of their size, half of them at 0.98 to 1.02 (`tests/mechanisms/test_load_jumps.py`). Of 42 by those of
-journals of 10 to 120 times the weight of their load all are, at 0.75 to 1.3. Without the loads' functions, as for
-impacts, 125 of 137 errors are told at 0.5 to 2.5 of their size.
+Accuracy, as estimate over error: 0.69 to 1.8, for half of them 0.98 to 1.02, for 416 errors above 2 % by random jumps,
+ramps, pulses and knocks of loads that are functions of time (`tests/mechanisms/test_load_jumps.py`). 0.75 to 1.3 for 42
+such errors of journals of 10 to 120 times the weight of their load. Without the loads' functions, as for impacts, 0.5
+to 2.5 for 125 of 137 errors.
 
-Left out: the first two steps, in which the rates still jump from what the model was given to what its films ask for;
-pulses within a step without `StepControl`, which leave no trace in any state; what the trapezoidal rule, which does not
-damp, lets ring on; constraints, in M; and errors of what films remember (cavities, heat, wear), which are of first
-order there: with `ElrodAdams` the estimate is some 0.4 to 0.9 of the error.
+Omitted are: the first two steps, in which the rates still jump from the given initial values to those of the films;
+pulses within a step without `StepControl`, which no accepted state shows; oscillations that the trapezoidal rule does
+not damp; constraints, in M; and errors of the films' memory (cavities, heat, wear), which are of first order. With
+`ElrodAdams` the estimate is some 0.4 to 0.9 of the error.
 """
 
 from __future__ import annotations
@@ -66,7 +66,8 @@ class MotionPart(NamedTuple):
     Attributes
     ----------
     rows, places : tuples of k int
-        In the wrench, and in the pose and the columns of a `FilmLoad`; in a motion rates lie four behind the pose.
+        Indices in the wrench, and in the pose and the columns of a `FilmLoad`. In a motion, the index of a rate is that
+        of its pose plus four.
     """
 
     rows: tuple[int, ...]
@@ -83,22 +84,23 @@ BALL: tuple[MotionPart, ...] = (MotionPart((0, 1, 2), (0, 1, 2)),)
 
 
 class FilmLoad(NamedTuple):
-    """Load on a film at n accepted states, with what the steps to them have missed; nan where it is not known.
+    """Load on a film at n accepted states, and local errors of the momentum in the steps to them; nan if unknown.
 
     Attributes
     ----------
     force : (n, 4) array
-        N and N m, in the order of the parts.
+        Force, N, and moment, N m, in the order of the parts.
     offset : (n, 1) array
-        Mean load in the step less the mean of its ends, over the departure of the load; nan where no function tells it.
+        Mean load in the step minus the mean of its ends, over the deviation of the load; nan if the load is no function
+        of time.
     lasting : (n, 1) array
-        Share of the step in which the load changes.
+        Fraction of the step in which the load changes.
     mass : (n, 6) array
         Upper triangles of the parts' masses, kg and kg m^2.
     momentum : (n, 4) array
-        Momentum missed with the trapezoid of the accelerations, N s and N m s.
+        Change of momentum minus the trapezoidal integral of the accelerations, N s and N m s.
     demanded : (n, 4) array
-        Masses times the accelerations that the equations of motion demand, N and N m.
+        Masses times the accelerations that satisfy the equations of motion, N and N m.
     """
 
     force: np.ndarray
@@ -116,24 +118,26 @@ class FilmLoad(NamedTuple):
 
 # Numbers of columns of a `FilmLoad`.
 LOAD_COLUMNS = (4, 1, 1, 6, 4, 4)
-# First state whose error is known.
+# Index of the first state whose error is estimated.
 FIRST = 3
-# Least gap against which errors count, share of the clearance.
+# Lower bound of the gap in relative errors, over the clearance. Smaller: larger errors are reported for closed gaps.
 SMALLEST_GAP_SHARE = 1e-3
-# Cosine of the turn of a peak in a step beyond which it has jumped.
+# Cosine of the angle by which a peak turns in a step, below which it counts as having jumped.
 JUMP = 0.9
-# A load has jumped in a step if its departure from a straight line, times the step, outgrows that of the step before:
-# that one is less than this share of it. A larger share repeats steps of smooth loads, a smaller one misses jumps of
-# loads that vary. It decides where the functions of loads are called, and which jumps have unknown places. Of 138
-# errors by jumps, without functions, 92, 92, 91 and 91 % were told at 0.5 to 2.5 of their size at 0.1, 0.2, 0.3 and
-# 0.5. Steps of a spatial four-bar mechanism without jumps: none is repeated at 0.05 to 0.3, five at 0.5, which then
-# takes 1.6 times the evaluations of films and has five times the error.
+# A load has jumped in a step if the deviation from a straight line, times the step, has grown suddenly: that of the
+# step before is less than this share of it. A larger share repeats steps of smooth loads, a smaller one misses jumps of
+# loads that vary. It decides where the functions of loads are called, and which jumps have an unknown time. Of 138
+# errors by jumps, without functions, 92, 92, 91 and 91 % were estimated at 0.5 to 2.5 times their size with shares of
+# 0.1, 0.2, 0.3 and 0.5. Steps of a spatial four-bar mechanism without jumps: none is repeated at 0.05 to 0.3; five are
+# repeated at 0.5, with 1.6 times the evaluations of films and five times the error.
 SUDDEN = 0.3
-# Error of a step over its allowed error, from which it is repeated.
+# Error of a step over its allowed error, above which the step is repeated. Larger: fewer repeated steps, larger errors.
 REFUSED = 8.0
-# What a step may miss of the error that is left, which counts as this share of the largest one at least.
+# Allowed error of a step, as a share of the error that is left; this counts as at least the same share of the largest
+# error. Larger: larger steps.
 BUDGET = 0.1
-# The error that the number of steps aims at, less than half of the one that is told: the first steps are not known.
+# Error that the recommended number of steps aims at. It is less than half of the error that is reported as too large,
+# because the error of the first steps is unknown.
 GOAL = 0.02
 
 
@@ -145,7 +149,10 @@ def recorded_entries(parts: tuple[MotionPart, ...]) -> tuple[np.ndarray, ...]:
 
 
 def no_error(parts: tuple[MotionPart, ...]) -> list[np.ndarray]:
-    """Return the errors at the beginning of a record: of each part error and rate, above their variance (2 k, 2 k)."""
+    """Return the errors at the start of a record: zeros (1 + 2 k, 2 k) for each part.
+
+    The first row has the error and its rate, the others their variance (2 k, 2 k).
+    """
     return [np.zeros((1 + 2 * len(part.rows), 2 * len(part.rows))) for part in parts]
 
 
@@ -161,35 +168,35 @@ def errors_behind(
     deflection: np.ndarray | None,
     load: FilmLoad,
 ) -> tuple[np.ndarray, Sequence[np.ndarray]]:
-    """Error (n,) of the gap over the minimum film thickness, of every accepted state, and ``before`` behind the last.
+    """Return the error (n,) of the gap over the minimum film thickness at accepted states, and the last errors.
 
-    The first `FIRST` states have nan, as those before the first tangent; a record in parts has the errors of the whole
-    if every part begins with the last `FIRST` states of the one before.
+    The first `FIRST` states, and those before the first tangent, have nan. A record may be evaluated in parts with the
+    same result, if every part begins with the last `FIRST` states of the previous one.
 
     Parameters
     ----------
     parts : tuple of MotionPart
         `JOURNAL` or `BALL`.
     before : sequence of arrays
-        `no_error` at the beginning of a record, or what was returned.
+        `no_error` at the start of a record, else the errors returned for the previous part.
     time : (n,) array
         s.
     motion : (n, 8) array
-        Pose and rates that the film was told.
+        Pose and rates that the film got.
     tangent : (n, m) array
-        `recorded_entries` of the tangents; nan where there was none: the last one counts.
+        `recorded_entries` of the tangents; nan for a state without one, which uses the last tangent.
     minimum_gap : (n,) array
         m.
     clearance, length : float
         m.
     deflection : (n, 2) array, optional
-        Deflection of a liner, where it is largest, m.
+        Largest deflection of a liner, m.
     load : FilmLoad
-        On the film; nan where it is not known: no jump.
+        Load on the film; where it is nan, no jump is assumed.
     """
     out = np.full(time.size, np.nan)
     last = np.maximum.accumulate(np.where(np.isfinite(tangent[:, 0]), np.arange(time.size), -1))
-    # rows before the first tangent know no error
+    # no errors in rows before the first tangent
     first = int(np.count_nonzero(last < 0))
     known = slice(max(FIRST, first), None)
     if time.size <= known.start:
@@ -218,36 +225,35 @@ def next_error(
     largest: float,
     deflection: np.ndarray | None = None,
 ) -> tuple[list[np.ndarray], float, np.ndarray]:
-    """Errors behind a step, what the step has missed over what it may miss, and errors by loads in it.
+    """Return the errors after a step, the local error over the allowed one, and errors by loads within the step.
 
-    It may miss what the film forgets of the ``largest`` error in a step, or a tenth of what the error before leaves of
-    it where that is more.
+    The allowed local error is the larger of two values: the part of the ``largest`` error by which the film's damping
+    reduces an error in a step, and `BUDGET` times the difference between ``largest`` and the error before the step.
 
     Parameters
     ----------
     parts : tuple of MotionPart
         `JOURNAL` or `BALL`.
     time : (n,) array
-        Times of the last states, three or more, six to tell all pulses from ringing, s.
+        Times of the last states, s: three or more; with six, all pulses are distinguished from ringing.
     motion : (n, 8) array
-        There, with the rates that the film was told.
+        Motion at these times, with the rates that the film got.
     tangents : two (m,) arrays
         `recorded_entries` of the tangents of the film's wrench, at the start of the step and at its end.
     load : FilmLoad
-        On the film.
+        Load on the film.
     before : sequence of arrays
-        Errors at the start of the step: `no_error`, or what was returned.
+        Errors at the start of the step: `no_error`, or those returned for the previous step.
     length, largest : float
         Length of the bearing, and allowed error of the gap, m.
     deflection : (n, 2) array, optional
-        Deflection of a liner, where it is largest, m.
+        Largest deflection of a liner, m.
 
     Returns
     -------
     list of arrays, float, ndarray (4,)
-        The last one in m: error by a jump whose place in the step is known, in the step or behind it; displacement by
-        another jump, at an end of the step, and by the whole load in the step, both without inertia; error before the
-        step.
+        The last one in m: error by a jump in the step, or the step before, whose time is known; displacement by a jump
+        of unknown time and by the whole load in the step, both without inertia; error before the step.
     """
     missed, lag, n = missed_in_steps(time, motion[:, :4], motion[:, 4:8]), _lag(time, deflection), time.size
     entries, h = np.stack([tangents[0]] * (n - 1) + [tangents[1]]), time[-1] - time[-2]
@@ -261,14 +267,14 @@ def next_error(
         loads = math.sqrt(3.0) * _spread(part, time, load)[-1], h * load.force[-1, places]
         moved[1:3] += [max(float(np.linalg.norm(inverse @ impulse)) for inverse in at_ends) for impulse in loads]
         memory = np.abs(np.linalg.eigvals(kept[-1])).max()
-        # time for which a rate of the error goes on
+        # time in which the rate of an error decays
         m, d, s = (float(np.linalg.norm(matrix)) for matrix in (M, mean, K[-1]))
         lasting = min(m / d if d > 0.0 else math.inf, math.sqrt(m / s) if s > 0.0 else math.inf) if m > 0.0 else 0.0
         size = np.sum(state[0].reshape(2, k) ** 2, axis=1) + np.diag(state[1:]).reshape(2, k).sum(axis=1)
         moved[3] += lever * math.sqrt(float(size[0]))
         left = largest - lever * math.sqrt(float(size[0] + lasting**2 * size[1]))
         allowed = max((1.0 - memory) * largest, BUDGET * max(left, BUDGET * largest))
-        # accelerations under constraints alternate: the smaller one of two momenta that agree in sign
+        # accelerations under constraints alternate: of two successive momenta with equal signs the smaller one counts
         a, b = _momenta(part, time, load)[-2:]
         steady = np.where(a * b > 0.0, np.sign(b) * np.minimum(np.abs(a), np.abs(b)), 0.0)
         own = lever * (missed - lag)[-1, places] + mobility @ steady
@@ -296,7 +302,7 @@ def _bend(time: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def missed_in_steps(time: np.ndarray, pose: np.ndarray, rate: np.ndarray) -> np.ndarray:
-    """Change of a pose (n, k) in every step beyond the integral of its rate (n, k) by parabolas."""
+    """Change of a pose (n, k) in every step, minus the integral of its rate (n, k) by parabolas."""
     h = np.diff(time)[:, None]
     out = _bend(time, rate)
     out[1:] = np.diff(pose, axis=0) - 0.5 * h * (rate[1:] + rate[:-1]) + out[1:] * h**3 / 6.0
@@ -318,17 +324,17 @@ def _lag(time: np.ndarray, deflection: np.ndarray | None) -> np.ndarray:
 
 
 def departure(time: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Departure of a load (n, k) at every state from the line through the two states before, zero at the first two."""
+    """Deviation of a load (n, k) at every state from the line through the two states before; zero at the first two."""
     change, steps, off = np.diff(load, axis=0), np.diff(time)[:, None], np.zeros_like(load)
     off[2:] = np.nan_to_num(change[1:] - change[:-1] * (steps[1:] / steps[:-1]))
     return off
 
 
 def _sudden(time: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Jump of a load (n, k) in every step, zero where it goes on as before."""
+    """Jump of a load (n, k) in every step; zero in steps without a jump."""
     steps, off = np.diff(time, prepend=time[0]), departure(time, load)
     back, ratio = np.zeros(time.size, dtype=bool), steps[2:, None] / steps[1:-1, None]
-    # behind a jump, the departure from the line before it where that is smaller
+    # after a jump, the deviation from the line before the jump, if it is smaller
     jumps, jump, onward = _outgrown(steps, off)[2:-1], off[2:-1].copy(), off[2:-1] * ratio[1:] + off[3:]
     smaller = jumps & (np.sum(onward * onward, axis=1) < np.sum(off[3:] * off[3:], axis=1))
     off[3:] = np.where(smaller[:, None], onward, off[3:])
@@ -337,21 +343,21 @@ def _sudden(time: np.ndarray, load: np.ndarray) -> np.ndarray:
 
 
 def _outgrown(steps: np.ndarray, off: np.ndarray) -> np.ndarray:
-    """Steps (n,) whose departure (n, k) of the load, times the step, outgrows that of the step before."""
+    """Return for each step (n,) whether the load's deviation (n, k), times the step, has grown suddenly, `SUDDEN`."""
     size = steps * np.sqrt(np.sum(off * off, axis=1))
-    # the first departure that is known has none to be compared with
+    # the first known deviation cannot be compared with an earlier one
     earlier = np.concatenate([np.full(3, np.inf), size[2:-1]])[: size.size]
     return earlier < SUDDEN * size
 
 
 def _spread(part: MotionPart, time: np.ndarray, load: FilmLoad) -> np.ndarray:
-    """Standard deviation (n, k) of the impulse of a part's jumps of the load whose offset is not known."""
+    """Standard deviation (n, k) of the impulse of a part's load jumps with an unknown time."""
     share = np.diff(time, prepend=time[0])[:, None] / math.sqrt(12.0)
     return np.where(np.isfinite(load.offset), 0.0, _sudden(time, load.force[:, part.places])) * share
 
 
 def _steps(K: np.ndarray, D: np.ndarray, M: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Error and its rate (n, 2 k, 2 k) behind a step, of an error and a momentum before; zero if nothing resists."""
+    """Maps (n, 2 k, 2 k) from error and momentum before a step to error and rate after it; 0 if nothing resists."""
     h, k = GAMMA * step[:, None, None], K.shape[1]
     S = M + h * (D + h * K)
     stiff = resists(S)
@@ -361,7 +367,7 @@ def _steps(K: np.ndarray, D: np.ndarray, M: np.ndarray, step: np.ndarray) -> np.
 
 
 def _momenta(part: MotionPart, time: np.ndarray, load: FilmLoad) -> np.ndarray:
-    """Momenta (n, k) of a part that steps have missed."""
+    """Local errors (n, k) of a part's momentum in every step."""
     momentum, demanded = (np.nan_to_num(values[:, part.places]) for values in (load.momentum, load.demanded))
     return momentum + _bend(time, demanded) * np.diff(time, prepend=time[0])[:, None] ** 3 / 6.0
 
@@ -407,7 +413,7 @@ def _terms(
         both = np.stack([ends - 1, ends])
         beyond, lasting = load.offset[ends] * departure(time, outer)[ends], load.lasting[ends, 0]
         demanded, h = load.demanded[:, places][both], steps[ends, None]
-        # inertia of the second order in the rates, as in a frame that turns: what the change of the rate has beyond
+        # inertia of second order in the rates, as in a rotating frame: the rest of the rate's change
         change = (M[ends] @ (rate[ends] - rate[ends - 1])[:, :, None])[:, :, 0] - load.momentum[:, places][ends]
         films = K[both], D[both], M[ends], demanded - outer[both]
         loads = outer[both] + change / h - demanded.mean(axis=0), beyond, lasting
@@ -420,7 +426,7 @@ def _terms(
 def _errors(
     count: int, known: slice, terms: tuple[np.ndarray, np.ndarray, np.ndarray], before: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Errors (n, k), traces (n,) of their variances, and error, rate and variance (1 + 2 k, 2 k) at the end."""
+    """Return errors (n, k), traces (n,) of their variances, and the last error, rate and variance (1 + 2 k, 2 k)."""
     kept, new, wide = terms
     k = new.shape[1] // 2
     errors, variances, x, P = np.zeros((count, k)), np.zeros(count), before[0], before[1:]
@@ -435,14 +441,14 @@ def _errors(
 
 
 def enough_steps(time: np.ndarray, omega: np.ndarray, error: np.ndarray, count: np.ndarray | None = None) -> str:
-    """Number of steps of equal size that would do, in words: errors fall with the square of the step at least.
+    """Return, in words, the number of equal steps with an error of `GOAL`: errors fall at least as the step squared.
 
     Parameters
     ----------
     time, omega, error : (n,) arrays
-        s, relative spin (rad/s), estimated errors with one that is known.
+        Times, s, relative spin, rad/s, and estimated errors, of which at least one is finite.
     count : (n,) int array, optional
-        Number of each step, where steps between them are not given.
+        Number of each step, if the arrays do not contain all steps.
     """
     worst = int(np.nanargmax(error))
     count = np.arange(time.size) if count is None else count

@@ -1,15 +1,16 @@
-"""The films on both end faces of a joint as a pure function of the journal's motion.
+"""Films on both end faces of a joint as a pure function of the journal's motion.
 
-The motion (11,) is that of `exudyn_ehd.joint.solved_film` and the axial position z of the journal's centre, the point
-of its axis that lies at O in the reference configuration. The collars are planes across the journal's axis at fixed
-distances from the centre. With the axis at (x, y) in the mid-plane and e = (x, y) + (bx, by) z_f at a face, z_f =
-+-L/2, they cross the bearing's axis at ``zeta = z + bx x + by y`` from their middle places and slide with
-``u = de/dt - omega e_z x e`` there. What is left out is of second order in the tilt, clearance squared over length.
+The motion (11,) is that of `exudyn_ehd.joint.solved_film` followed by the axial position z of the journal's centre, the
+point of its axis that lies at O in the reference configuration. The collars are planes perpendicular to the journal's
+axis at fixed distances from the centre. The axis is at (x, y) in the mid-plane and at e = (x, y) + (bx, by) z_f at a
+face, z_f = +-L/2. A collar crosses the bearing's axis at the distance ``zeta = z + bx x + by y`` from its middle
+position and slides there with ``u = de/dt - omega e_z x e``. Terms of second order in the tilt, clearance squared over
+length, are omitted.
 
-Between parallel planes at the cavity pressure that are at rest along the axis nothing presses, and a film that ruptures
-has one-sided derivatives only: it carries where it closes. The tangent there is the mean of both sides of every
-coordinate. In the middle of two equal faces both sides are the same, as they are for tilts anywhere: about half of an
-unbroken film.
+Between parallel planes that are at rest along the axis the film has its cavity pressure. A film that ruptures then has
+one-sided derivatives only: it carries where its gap closes. The tangent there is the mean of both sides of every
+coordinate. For the axial position midway between two equal faces, and for tilts at any position, both sides are equal:
+about half of an unbroken film.
 """
 
 from __future__ import annotations
@@ -29,22 +30,22 @@ from exudyn_ehd.joint.solved_film import BESIDE, CENTRE, LARGEST_SPREAD, MOTION_
 from exudyn_ehd.status import FilmError, Status
 
 PLACE = MOTION_SIZE
-"""Entry of the motion that is the axial position, the last one."""
+"""Index of the axial position in the motion, the last one."""
 
 
 @dataclass(frozen=True, eq=False)
 class ThrustEvaluation:
-    """One evaluation of the faces.
+    """One evaluation of the films on end faces.
 
     Attributes
     ----------
     status : Status
-        The worst of the faces.
+        The worst status of the faces.
     motion : (11,) array
     wrench : (6,) array
         Force (N) and moment about O (Nm) on the journal, joint frame; nan unless converged.
     states : tuple of FaceState
-        Lower face first.
+        State of every face, the lower one first.
     """
 
     status: Status
@@ -60,7 +61,7 @@ class ThrustEvaluation:
         return min(state.minimum_gap for state in self.states)
 
     def tangent(self) -> np.ndarray:
-        """d wrench / d motion (6, 11), exact; only until the model's next evaluation."""
+        """d wrench / d motion (6, 11), exact; it must be called before the model's next evaluation."""
         if self.serial != self.model.serial:
             raise RuntimeError("ThrustEvaluation.tangent: the model has evaluated another state since.")
         if not np.isfinite(self.wrench.sum()):
@@ -73,13 +74,13 @@ class ThrustEvaluation:
         return out
 
     def axial_damping(self) -> float:
-        """-dF/dw, N s/m; nan between planes at rest whose motions to either side meet different damping."""
+        """Axial damping -dF/dw, N s/m; nan for planes at rest if it differs between both directions of motion."""
         damping = -float(self.tangent()[2, 9])
         uneven = sum(face.side * float(face.tangent()[2, 3]) for face in self.model.faces if is_at_rest(face))
         return math.nan if abs(uneven) > 2.0 * LARGEST_SPREAD * damping else damping
 
     def heat(self) -> FacesHeat:
-        """Heat of all faces and the oil that they take in; only until the model's next evaluation."""
+        """Heat of all faces and the oil that they take in; it must be called before the model's next evaluation."""
         heat, inner, outer = 0.0, np.zeros(2), 0.0
         for face in self.model.faces:
             own, inner[(face.side + 1) // 2], back = face.heat()
@@ -94,8 +95,8 @@ class ThrustEvaluation:
     def quantities(self) -> Mapping[str, float]:
         """Scalars by their names in histories, SI units.
 
-        Force and torque are on the journal, along the bearing's axis and about it; the power turns into heat or pumps
-        oil.
+        Force and torque act on the journal, along the bearing's axis and about it. The power loss becomes heat and work
+        on the oil.
         """
         return {
             "axial_position": float(self.motion[PLACE]),
@@ -135,7 +136,7 @@ class ThrustModel:
             for k, (side, present) in enumerate(((-1, faces.lower), (1, faces.upper)))
             if present
         ]
-        # change of the tangent of faces at rest by side, axial position and spin: aligned journals stay at rest
+        # changes of the tangent of faces at rest, stored because faces of aligned journals stay at rest
         self._changes: dict[tuple[float, ...], np.ndarray] = {}
 
     def height(self, face: FaceFilm) -> float:
@@ -143,9 +144,10 @@ class ThrustModel:
         return 0.5 * face.side * self.bearing.length
 
     def viscosities(self, history: History | None) -> np.ndarray:
-        """Viscosity (2,) of the lower and of the upper face over the oil's own, for a memory of the bore's film.
+        """Viscosity (2,) of the lower and of the upper face over that of the lubricant, by the bore film's history.
 
-        One temperature is that of all films; of a temperature field a face gets the oil that leaves the bore there.
+        If the bore's film has one temperature, the faces have the same. With a temperature field, a face has the
+        temperature of the oil that leaves the bore at its end.
         """
         thermal, T = self.bearing.thermal, None
         if thermal is None:
@@ -157,7 +159,7 @@ class ThrustModel:
         return np.broadcast_to(viscosity_ratio(self.bearing.lubricant, np.asarray(T)), 2)
 
     def evaluate(self, motion: np.ndarray, history: History | None = None) -> ThrustEvaluation:
-        """The films at a motion (11,) and a memory of the bore's film at the start of the step."""
+        """Evaluate the films at a motion (11,), with the bore film's history at the start of the step."""
         self.serial += 1
         motion = np.array(motion, dtype=float)
         if not np.isfinite(motion.sum()):
@@ -177,7 +179,8 @@ class ThrustModel:
     def change_at_rest(self, face: FaceFilm) -> np.ndarray:
         """Difference (6, 9) between the mean of one-sided derivatives and the tangent of the unbroken film.
 
-        Of a collar that turns about the bearing's axis; its shift changes this by clearance over radius.
+        It is computed for a collar centred on the bearing's axis; its eccentricity would change it by clearance over
+        radius.
         """
         motion, key = face.motion, (face.side, float(face.motion[0]), float(face.motion[6]), face.ratio)
         if key not in self._changes:
@@ -198,9 +201,9 @@ def faces_of(bearing: JournalBearing) -> ThrustModel | None:
 
 
 def quotients(wrench: Callable[[np.ndarray], np.ndarray], motion: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """One-sided derivatives (2, 6, n) of a wrench to the entries of a motion (n,) with a step, from above and below.
+    """One-sided derivatives (2, 6, n) of a wrench to those entries of a motion (n,) that have a step, from both sides.
 
-    Steps are `BESIDE` of what changes the wrench as a whole: changes of second order are omitted.
+    Steps are `BESIDE` times a typical size of the entry. Changes of second order are set to zero.
     """
     out, middle = np.zeros((2, 6, motion.size)), wrench(motion)
     # above the square of the step and the round-off: larger changes are of first order in the step
@@ -213,14 +216,14 @@ def quotients(wrench: Callable[[np.ndarray], np.ndarray], motion: np.ndarray, st
 
 
 def seen_by_faces(film: SolvedFilm | None, heat: OilTemperature | None) -> History:
-    """Memory from which films on end faces take their temperature beside a steady film."""
+    """Return the history of a steady film that sets the temperature of the films on end faces."""
     if film is None or film.temperature is None or heat is None:
         return History()
     return replace(film.history or History(), leaving=heat.leaving(film, film.temperature))
 
 
 def is_at_rest(face: FaceFilm) -> bool:
-    """Return whether a film that may rupture lies between parallel surfaces at rest and presses nowhere."""
+    """Return whether a film that may rupture has no pressure, between parallel surfaces that are at rest."""
     source = CENTRE * abs(float(face.motion[6]))
     if np.abs(face.pose[1:]).max() > CENTRE or np.abs(face.rate).max() > source:
         return False
@@ -260,7 +263,7 @@ def face_motion_map(motion: np.ndarray, height: float) -> np.ndarray:
 
 
 def about_origin(wrench: np.ndarray, height: float) -> np.ndarray:
-    """Wrench (6, ...) about the face's centre at z = ``height`` to one about O."""
+    """Convert a wrench (6, ...) about the face's centre at z = ``height`` to one about O."""
     out = wrench.copy()
     out[3] -= height * wrench[1]
     out[4] += height * wrench[0]

@@ -1,12 +1,12 @@
-"""The accepted steps of one joint: recorded exactly as Exudyn accepted them, and remembered by the film.
+"""Accepted steps of one joint: its record, and the memory of its film.
 
-Exudyn has no call for an accepted step. A step is accepted when the start of the step has moved on: the state at the
-new start is then evaluated once more, recorded, watched for runs that ring or chatter, and what the film remembers
-there serves the next step. A rejected step leaves nothing behind.
+Exudyn does not report accepted steps. A step is known to be accepted when the solver's start-of-step time has changed.
+The state at the new start is then evaluated once more, recorded, and checked for ringing and chatter. The film's memory
+there is used in the next step. A rejected step changes neither record nor memory.
 
-What a film remembers follows the state. A run begins with what the film remembered when the system was there: at the
-end of the run before, or at its beginning where the run starts there again. The clock does not matter, and static
-solves in between, in which films are steady, change nothing of it.
+The memory of a film belongs to a state of the system. A run that starts at the end state, or at the initial state, of
+the previous run begins with the film's memory at that state. The time does not matter. Static solves in between, in
+which films are steady, do not change the memory.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart, next_start
 from exudyn_ehd.status import OverloadWarning, Status, warn_user
 
-# A run goes on with the last step of the run before if it starts at its end, share of that step; the sum of a million
-# steps has a round-off of 1e-4 of one.
+# Largest difference, over a step, between the start of a run and the end of the previous one, up to which the run
+# continues it. The sum of a million steps has a round-off of 1e-4 of a step.
 SAME_TIME = 1e-3
 
 
 class SteppedElement(Protocol):
-    """Element of a joint, as its accepted steps use it.
+    """Interface of a joint's element for `AcceptedSteps`.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class SteppedElement(Protocol):
     outer : OuterLoad
     presence : Presence
     is_massless : bool
-        True if it has coordinates of its own without mass, which explicit solvers do not support.
+        True if the element has additional coordinates without mass, which explicit solvers do not support.
     """
 
     model: JointModel
@@ -64,10 +64,10 @@ class SteppedElement(Protocol):
         """Coordinates and rates of all nodes of the element."""
 
     def look(self, mbs: exu.MainSystem, time: float, configuration: exu.ConfigurationType) -> Trial:
-        """The film at the state that Exudyn holds in ``configuration``."""
+        """Evaluate the film at Exudyn's state in ``configuration``."""
 
     def motion(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> np.ndarray:
-        """Motion of the journal at the state in ``configuration``; the film is not asked."""
+        """Motion of the journal at the state in ``configuration``, without evaluating the film."""
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record; None without a film."""
@@ -75,14 +75,14 @@ class SteppedElement(Protocol):
     def fields(
         self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType
     ) -> FilmFields:
-        """Fields of the film at a trial, the last one."""
+        """Fields of the film at a trial, which must be the last one."""
 
     def forget(self) -> None:
-        """Evaluate the film anew at the next state, whichever it is."""
+        """Drop the last evaluation, so that the film is evaluated again at the next state."""
 
 
 class AcceptedSteps:
-    """Record, memory and watches of one joint.
+    """Record, memory and checks of the accepted steps of one joint.
 
     Parameters
     ----------
@@ -98,36 +98,35 @@ class AcceptedSteps:
     solvers : pair
         Exudyn's stored solvers in the run under way, see `exudyn_solvers.stored_solvers`.
     solver : object or None
-        The one of them that is at work.
+        The running one of them.
     memory : History or None
-        Memory of the film at ``start``, which waits while a static solver is at work; None for a film that remembers
-        nothing.
+        Memory of the film at ``start``; it is kept unchanged during static solves. None for a film without memory.
     asked : (float, list of float)
-        Time and coordinates for which a solver has asked last.
+        Time and coordinates of the last call by a solver.
     begin : StepStart or None
-        Start of the present step; None where the film takes the velocities as they are.
+        Start of the present step; None if the film uses the velocities without correction.
     control : GapWatch or None
         Rejects steps that are too coarse.
     record : Record
         Record of the accepted steps.
     recorder : FilmRecorder or None
-        Keeps films.
+        Recorder of films.
     observers : list of functions
-        Called with every accepted trial that has a film.
+        Functions that are called with every accepted trial that has a film.
     in_own_run : bool
-        Whether one of this package's calls of a solver is under way.
+        True during a run that was started by a function of this package, such as `SolveDynamic`.
     unseen : int
-        Steps in a row that no solver known has taken.
+        Number of successive steps by a solver that is not stored in ``mbs.sys``.
     tolerance : float or None
-        Newton's absolute tolerance that the run was given, where it is raised for the rounding of meshes.
+        Newton's absolute tolerance of the settings, if the run raises it because of the round-off of meshes.
     chosen : bool
-        Whether the run under way chooses the size of its steps.
+        True if the present run chooses its steps by their error.
     tangent : (m,) array or None
         `recorded_entries` of the last tangent of the film's wrench in Newton's method of an implicit run.
     """
 
     def __init__(self, film: SteppedElement) -> None:
-        # the element holds its steps: without a circle it goes as soon as its system does
+        # weak reference, since the element refers to its steps: without a cycle it is freed with its system
         self.film: SteppedElement = weakref.proxy(film)
         self.start = self.began = np.nan
         self.solver: exudyn_solvers.Solver | None = None
@@ -135,7 +134,7 @@ class AcceptedSteps:
         self.recorder: FilmRecorder | None = None
         self.observers: list[Callable[[Trial], None]] = []
         self.record = Record(film.model.bearing)
-        # a bore that wears or yields has another gap than the rigid surfaces
+        # the gap of a bore that wears or deflects differs from that of the rigid surfaces
         self._makes_room = any(getattr(film.model.bearing, part, None) is not None for part in ("bush", "wear"))
         self._uses_memory = self.in_own_run = self.chosen = False
         self.unseen = 0
@@ -146,7 +145,7 @@ class AcceptedSteps:
         self.forget()
 
     def forget(self) -> None:
-        """Let the next run start with a new record and a film that remembers nothing."""
+        """Let the next run start with a new record and a film without memory."""
         self._resumed: tuple[float, History | None, StepStart | None] | None = None
         # coordinates and memory where the run began
         self._first: list[float] = []
@@ -160,14 +159,14 @@ class AcceptedSteps:
         self.film.forget()
 
     def accept(self, mbs: exu.MainSystem, start: float, solvers: exudyn_solvers.Stored) -> None:
-        """Take the state at the start of the current step as accepted.
+        """Record the state at the start of the current step as accepted.
 
         Raises
         ------
         FilmError
-            If the film there is none that can go on.
+            If the film at that state ends the run.
         """
-        # without a stored solver it is the clock put back that tells of a new run
+        # without a stored solver a new run is recognised by a time that runs back
         begins = solvers != self.solvers or start < self.start
         resumed = begins and self._begin_run(mbs, start, solvers)
         self.unseen = 0 if begins or not self.is_idle else self.unseen + 1
@@ -185,7 +184,7 @@ class AcceptedSteps:
             film = trial.evaluation if row is not None and self._makes_room else None
             self.control.start(trial, None if film is None else film.quantities()["minimum_gap"])
         if row is not None:
-            # a resumed state was recorded at the end of its step; for the memory it is the beginning of the next
+            # a resumed state was recorded at the end of its step
             if not resumed or start > self.record.last_time:
                 self.record.append(row)
                 if self.recorder is not None:
@@ -202,11 +201,11 @@ class AcceptedSteps:
         self._check(start, trial, start - last, row)
 
     def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: exudyn_solvers.Stored) -> bool:
-        """Prepare for a solver that has not asked before; whether its run goes on from a stored state."""
+        """Prepare for the run of a new solver; return whether the run continues from a stored state."""
         self.film.presence.require(mbs)
         film, place, before = self.film, self.film.read(mbs, START_OF_STEP)[0], self._first
-        # a run starts behind the record, and elsewhere than the run before, whose end is now the initial state; where
-        # nothing has moved either run starts where the other ended
+        # the run continues the record if its time is later and its state is not the start of the previous run; if
+        # nothing has moved in that run, its start is its end as well
         goes_on = start > self.record.last_time and (place != before or self.asked[1] == before)
         resumed = self._resumed is not None and start == self._resumed[0]
         solver = self.solver if solvers == self.solvers else exudyn_solvers.running_solver(self.solvers, solvers)
@@ -217,7 +216,7 @@ class AcceptedSteps:
         self.solver, self.solvers = solver, solvers
         if exudyn_solvers.is_explicit(self.solver) and film.is_massless:
             raise film.failures.no_mass()
-        # the time of a static solve is a load parameter: the film is the steady one
+        # in a static solve time is a load parameter, and the film is the steady one
         self._uses_memory = film.model.remembers and not exudyn_solvers.is_static(self.solver)
         self._watch_anew(mbs)
         self.film.outer.begin(self.solver)
@@ -232,7 +231,7 @@ class AcceptedSteps:
         return resumed
 
     def _watch_anew(self, mbs: exu.MainSystem) -> None:
-        """Begin to watch the films, forces and steps of a run; every warning is given once."""
+        """Reset the checks of films, forces and steps for a new run; every warning is given once per run."""
         bearing, solver = self.film.model.bearing, self.solver
         self._chatter = doubts.ChatterWatch(bearing) if exudyn_solvers.is_explicit(solver) else None
         area = 2.0 * bearing.journal_radius * bearing.length
@@ -247,10 +246,10 @@ class AcceptedSteps:
     def _take_up(
         self, mbs: exu.MainSystem, start: float, place: list[float], solver: exudyn_solvers.Solver | None
     ) -> History | None:
-        """Memory for a run of ``solver`` that goes on from a stored state, or from where the run before has ended.
+        """Return the memory for a run that continues from a stored state, or from the end of the previous run.
 
-        Sets start and begin of its first step; that of a run which continues the last one in time is the last step
-        itself, whose end is still to be accepted.
+        Sets ``start`` and ``begin`` of its first step. For a run that continues the last one in time, these are those
+        of the last step, whose end has still to be accepted.
         """
         film, memory, last = self.film, self.memory, self.start
         if self._resumed is not None:
@@ -264,7 +263,7 @@ class AcceptedSteps:
         if not static and abs(start - end) <= SAME_TIME * (end - last):
             return memory
         if memory is not None:
-            # explicit solvers do not ask at the end of a step
+            # explicit solvers do not evaluate the film at the end of a step
             if place != self.asked[1] and not exudyn_solvers.is_explicit(self.solver):
                 film.failures.warn_of_memory(start, end)
             if self._uses_memory and end > last:
@@ -283,7 +282,7 @@ class AcceptedSteps:
         return next_start(self.begin, trial.bodies, time, self.film.model.bearing.radial_clearance)
 
     def _check(self, start: float, trial: Trial, step: float, row: np.ndarray | None) -> None:
-        """Raise `FilmError` for a film that can't go on, warn of films that run dry or thin and of forces that ring."""
+        """Raise `FilmError` for a film that ends the run; warn of dry or thin films and of forces that ring."""
         failures = self.film.failures
         if trial.status == Status.NO_PRESSURE and (step > 0.0 or exudyn_solvers.is_implicit(self.solver)):
             raise failures.no_film(start, trial, explicit=False)
@@ -308,7 +307,7 @@ class AcceptedSteps:
             raise failures.chatter(start, trial, step=step, miss=self._chatter.error)
 
     def _warn_of_film(self, start: float, trial: Trial, row: np.ndarray) -> None:
-        """Warn, once per run, of a film that is too thin for smooth surfaces, or presses too hard for oil or steel."""
+        """Warn, once per run, of a film that is too thin for smooth surfaces or has too high a pressure."""
         failures = self.film.failures
         self._grid.take(start, row[PEAK_PRESSURE], getattr(trial.found, "film", None))
         if (gap := row[MINIMUM_GAP]) < self._thin:
@@ -320,7 +319,7 @@ class AcceptedSteps:
 
     @property
     def film_memory(self) -> History | None:
-        """Memory of the film in the run under way; None of a steady film."""
+        """Memory of the film in the present run; None for a steady film."""
         return self.memory if self._uses_memory else None
 
     @property
@@ -330,11 +329,11 @@ class AcceptedSteps:
 
     @property
     def _accepted(self) -> exu.ConfigurationType:
-        # during a run, and after one that an exception has ended, the current state need not be an accepted one
+        # during a run, and after a run that ended with an exception, the current state may not be an accepted one
         return CURRENT if self.is_idle else START_OF_STEP
 
     def look_at_accepted(self, mbs: exu.MainSystem) -> tuple[float, Trial, exu.ConfigurationType]:
-        """Time of the last accepted state, the film there, and the configuration that holds it."""
+        """Time of the last accepted state, the film there, and the configuration of this state."""
         configuration = self._accepted
         time = mbs.systemData.GetTime(configuration)
         return time, self.film.look(mbs, time, configuration), configuration
@@ -353,16 +352,16 @@ class AcceptedSteps:
     def resume(
         self, time: float, memory: History | None, rows: np.ndarray | None = None, begin: StepStart | None = None
     ) -> None:
-        """Go on with ``memory``, record and start of the next step, by default none, in a run from ``time`` on."""
+        """Continue in a run from ``time`` with the given memory, record and start of the next step; default: none."""
         self.forget()
         if rows is not None:
             self.record.restore(rows)
         self._resumed = (time, memory, begin)
 
     def tell(self, mbs: exu.MainSystem) -> None:
-        """Log the line of the run that has ended, once; bring its record to its file, if it has one.
+        """Log the summary line of the finished run, once, and write its record to its file, if it has one.
 
-        Explicit solvers, and a control of errors, repeat steps as they go: the line names none.
+        For explicit solvers and for a run with steps chosen by error, repeated steps are normal: the line omits them.
         """
         self.record.write()
         if self._told:
@@ -376,9 +375,9 @@ class AcceptedSteps:
             doubts.LOGGER.info("%s", doubts.line(failures.name, bearing, history, why))
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
-        """The record, completed by the end of the run or the current state if that is later than the last step.
+        """Return the record, completed by the end of the run or by the current state if it is later.
 
-        Warns if it has no film.
+        Warns if that state has no film.
         """
         if self.solver is not None and self.is_idle:
             self.tell(mbs)
@@ -387,7 +386,7 @@ class AcceptedSteps:
         return self.record.snapshot(self.record.end)
 
     def _look_at_end(self, mbs: exu.MainSystem) -> None:
-        """Take the row of the state now, unless it is known or recorded, or was changed since the run."""
+        """Store the row of the current state, unless it is recorded already or was changed after the run."""
         time, solver = mbs.systemData.GetTime(self._accepted), self.solver if self.is_idle else None
         known = solver is not None and (self.record.end is not None or time != solver.it.currentTime)
         if known or time <= self.record.last_time:

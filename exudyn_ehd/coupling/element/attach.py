@@ -1,6 +1,7 @@
-"""Put the items of a flexible bush into an Exudyn system, and make the film element of any joint.
+"""Create the items of a flexible bush in an Exudyn system, and the film element of any joint.
 
-Flexible bores start in equilibrium with the films of the initial configuration; several on one body together.
+Flexible bores start in equilibrium with the films of the initial configuration. Several bores on one body are brought
+into equilibrium together.
 """
 
 from __future__ import annotations
@@ -35,7 +36,8 @@ from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.loads import Gravity
 from exudyn_ehd.status import InputError, Status
 
-# Period over 2 pi of a mode on its numerical mass over the journal's radius, s/m: a thousandth of what sound takes.
+# Period over 2 pi of a mode with its numerical mass, over the journal's radius, s/m: a thousandth of the travel time of
+# sound over the radius. Larger: the numerical mass affects the motion.
 NUMERICAL_PERIOD = 2e-7
 # Name in mbs.variables of the films on every body, by the number of its modal node
 _BODIES = "lubricatedBodies"
@@ -58,7 +60,7 @@ def attach_bush(
     mbs : exudyn.MainSystem
     model : ElasticBearingModel
     items, sides : pairs
-        Housing and journal; the sides are brought to the initial configuration.
+        Housing and journal; the sides are updated to the initial configuration.
     place : ndarray (3,), ndarray (3, 3)
         Joint point and joint frame in the reference configuration, global.
     name : str
@@ -66,14 +68,15 @@ def attach_bush(
     show : bool
         Draw the bush.
     gravity : ndarray (3,) or None
-        For a nodal bush whose mass counts beside the housing's; None: the housing contains it [m/s^2].
+        Gravity of a nodal bush whose mass counts in addition to the housing's [m/s^2]; None: the housing contains the
+        bush.
 
     Returns
     -------
     element : FilmElement
-        The film on it.
+        Film element on the bush.
     arguments : dict
-        Arguments of the element's ObjectGenericODE2 besides nodes and functions.
+        Further arguments of the element's ObjectGenericODE2, without nodes and functions.
     """
     for side in sides:
         state = undeformed(mbs, side) if isinstance(side, FloatingBoreSide) else None
@@ -105,10 +108,9 @@ def attach_bush(
     )
     element = ModalFilmElement(model, *sides, [node], name, model.bore)
     element.is_massless = True
-    # far too small to be felt: without one Exudyn finds no initial accelerations of the whole system; the modes
-    # have none (`ModalFilmElement.force`)
+    # numerical mass, too small to have an effect: without it Exudyn cannot compute initial accelerations of the system
     mass = np.diag(element.stiffness * (NUMERICAL_PERIOD * model.bearing.journal_radius) ** 2)
-    # the sides of markers find their size after Assemble only
+    # not the sides' sizes: those of markers are known after Assemble only
     rigid = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for side in sides for node in side.nodes)
     return element, {"massMatrix": block_diag(np.zeros((rigid, rigid)), mass)}
 
@@ -145,7 +147,7 @@ def _attach_nodes(
 
 @dataclasses.dataclass(frozen=True)
 class StartingFilm:
-    """A film on its bore, the motion (10,) and the journal's angle at which it starts, and what it remembers there."""
+    """A film on its bore, with its initial motion (10,), initial angle of the journal, and initial memory."""
 
     model: ElasticBearingModel
     motion: np.ndarray
@@ -155,10 +157,10 @@ class StartingFilm:
 
 @dataclasses.dataclass
 class FilmsOnOneBody:
-    """Films on bores of one body, whose modes they share, as `bore_equilibrium` takes them.
+    """Films on bores of one body, which have the same modes, with the interface that `bore_equilibrium` needs.
 
-    The first number of the motion is the part of all poses. ``bore`` is one of the bores, which have the same
-    coordinates, and ``elasticity`` that of the body, with growth by spin if the first film is on a journal.
+    The first number of the motion is the fraction of all poses. ``bore`` is one of the bores, which all have the same
+    coordinates. ``elasticity`` is that of the body, with centrifugal growth if the first film is on a journal.
     """
 
     films: list[StartingFilm]
@@ -168,7 +170,7 @@ class FilmsOnOneBody:
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> FilmsTogether:
-        """All films at a motion (10 + 2 k,)."""
+        """Evaluate all films at a motion (10 + 2 k,)."""
         scale = np.ones(motion.size)
         scale[:4] = motion[0]
         motions = [scale * np.concatenate((film.motion, motion[MOTION_SIZE:])) for film in self.films]
@@ -179,7 +181,7 @@ class FilmsOnOneBody:
 
 @dataclasses.dataclass
 class FilmsTogether:
-    """Evaluations of films on one body, the worst status, and the body's coordinates with the sum of the loads."""
+    """Evaluations of films on one body, with the worst status, the body's coordinates and the sum of the loads."""
 
     parts: list[ElasticEvaluation]
     status: Status
@@ -191,10 +193,10 @@ class FilmsTogether:
 
 
 def initial_coordinates(model: ElasticBearingModel, sides: tuple[Side, Side]) -> np.ndarray | None:
-    """Coordinates (k,) of the bore in equilibrium with the film of the initial configuration, None if there is none.
+    """Coordinates (k,) of the bore in equilibrium with the film of the initial configuration; None without one.
 
-    The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a
-    flooded film's first instant is Swift-Stieber's; with a heat balance it has the temperature that the run starts at.
+    The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and at its
+    first instant it equals a Swift-Stieber film. A film with a heat balance has the initial temperature of the run.
     The modes of a finite-element journal are those of its body, see `_settle_body`.
     """
     if isinstance(model, TurningModel):
@@ -203,7 +205,7 @@ def initial_coordinates(model: ElasticBearingModel, sides: tuple[Side, Side]) ->
 
 
 def undeformed(mbs: exu.MainSystem, side: FloatingBoreSide) -> tuple[np.ndarray, np.ndarray]:
-    """Initial q and q_t of a body, its modes at rest if they are where an earlier joint's film has put them."""
+    """Initial q and q_t of a body; modes that films of earlier joints have set are undeformed and at rest."""
     (_, q, q_t), known, n = node_coordinates(mbs, side.nodes), _known(mbs, side), side.floating.size
     if known and np.array_equal(q[n:], known[1]):
         q[n:] = q_t[n:] = 0.0
@@ -218,11 +220,11 @@ def _settle_body(
     side: Side,
     surface: object,
 ) -> list[Index]:
-    """Let the modes of a reduced body start in equilibrium with all of its films, unless the scene has set them.
+    """Let the modes of a reduced body start in equilibrium with all of its films, unless the model has set them.
 
-    The body's frame is held; the sides' frames are those of the undeformed body. A journal that turns starts with what
-    centrifugal forces make it grow by, and with its shape at rest in the joint's frame. The body has its exact Jacobian
-    unless it shall keep Exudyn's or has user functions.
+    The body's frame is fixed; the sides' frames are those of the undeformed body. The initial state of a journal that
+    turns includes centrifugal growth, and its shape is at rest in the joint's frame. The body gets its exact Jacobian,
+    unless the model keeps Exudyn's or the body has user functions.
 
     Returns
     -------
@@ -238,7 +240,7 @@ def _settle_body(
     if not surface.settled or (present.any() and not others):
         return [node]
     films = [*others, _starting_film(model, sides, surface.held())]
-    # the body grows by its spin whatever joint comes first
+    # films on journals first, because the first film decides about centrifugal growth
     films.sort(key=lambda film: not isinstance(film.model, TurningModel))
     start = _equilibrium(films)
     if start is not None:
@@ -250,14 +252,14 @@ def _settle_body(
 
 
 def _known(mbs: exu.MainSystem, side: FloatingBoreSide) -> tuple[list[StartingFilm], np.ndarray] | None:
-    """Films that have settled a body before, and where they have put it."""
+    """Films of earlier joints on a body, and the coordinates of the equilibrium that they have set."""
     return mbs.variables.get(_BODIES, {}).get(int(side.nodes[-1]))
 
 
 def _starting_film(
     model: ElasticBearingModel, sides: tuple[Side, Side], held: ReducedBore | None = None
 ) -> StartingFilm:
-    """The film of a model at the sides' frames, on its own bore or on that of a body whose frame does not follow."""
+    """Initial film of a model at the sides' frames, on its own bore or on that of a body with a fixed frame."""
     bearing, film = model.bearing, model
     if bearing.cavitation.conserves_mass:
         closure = SwiftStieber(cavity_pressure=bearing.cavitation.cavity_pressure)
@@ -275,13 +277,13 @@ def _starting_film(
     frames = sides[0].frame, sides[1].frame
     motion = relative.motion_of(*frames)
     known = film.initial_history(motion)
-    # pressures of supply areas are those in balance with the bore
+    # without pressures of supply areas: they are found in balance with the bore
     memory = None if known is None else dataclasses.replace(known, pockets=None)
     return StartingFilm(film, motion, memory, relative.angle_of(*frames))
 
 
 def _equilibrium(films: list[StartingFilm]) -> np.ndarray | None:
-    """Coordinates (k,) of the bores in equilibrium with their films, None if there is none."""
+    """Coordinates (k,) of the bores in equilibrium with their films; None without one."""
     first = films[0]
     if len(films) == 1:
         settled = first.model.evaluate_steady(first.motion, first.memory, 0.0, first.spin)
@@ -292,12 +294,12 @@ def _equilibrium(films: list[StartingFilm]) -> np.ndarray | None:
 
 
 def _standing_rates(films: list[StartingFilm], q: np.ndarray) -> np.ndarray:
-    """Rates (k,) with which shapes of turning journals stand as well as their modes let them: T q_t = -omega D T q."""
+    """Rates (k,) that keep shapes of turning journals at rest in space as far as possible: T q_t = -omega D T q."""
     turning = [(f.model.turning, f) for f in films if isinstance(f.model, TurningModel)]
     if not turning:
         return np.zeros_like(q)
     maps = [journal.map(film.spin) for journal, film in turning]
-    # what spin alone makes of a journal goes round with it
+    # centrifugal growth turns with the journal and has no rate
     elasticity = turning[0][1].model.elasticity
     q = q - np.linalg.solve(elasticity.stiffness, elasticity.load)
     carried = [film.motion[8] * journal.turned(T @ q) for (journal, film), T in zip(turning, maps, strict=True)]
@@ -305,7 +307,7 @@ def _standing_rates(films: list[StartingFilm], q: np.ndarray) -> np.ndarray:
 
 
 def add_faces(mbs: exu.MainSystem, element: FilmElement, offset: float) -> None:
-    """Give an element the films on the end faces of its bearing.
+    """Add the films on the end faces of its bearing to an element.
 
     Parameters
     ----------

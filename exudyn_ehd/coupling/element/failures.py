@@ -1,11 +1,11 @@
 """Messages for states without a valid film, or close to one: place, cause and remedy.
 
-A pressure law carries a film of rigid surfaces up to an end of q, the integral of dp / r(p) with the viscosity ratio r:
-1 / alpha for Barus' law, 5 % more for Roelands' with 2e-8 1/Pa at 0.02 Pa s. With the peak at the share s of that end,
-a film at a given speed has reached the share 1 - (1 - s)^0.65 of the largest load that it can carry: within 0.03 for
-these two laws (within 0.17 for Roelands' with 1e-8 1/Pa at 0.2 Pa s, which is nearer to the end than that says), from
-s = 0.5 on, L/D of 0.25 to 1, and eccentricity ratios of 0.5 to 0.97 at the end. A mean pressure alone says less: at the
-end it is 0.2 to 0.9 of 1 / alpha.
+With a pressure law, a film of rigid surfaces exists only up to an end of q, the integral of dp / r(p) with the
+viscosity ratio r. The end is 1 / alpha for Barus' law, and 5 % more for Roelands' law with 2e-8 1/Pa at 0.02 Pa s. A
+film at a given speed, whose peak is at the share s of the end, carries the share 1 - (1 - s)^0.65 of its largest
+possible load. The error of this share is below 0.03 for these two laws, from s = 0.5 on, for L/D of 0.25 to 1 and
+eccentricity ratios of 0.5 to 0.97 at the end. It is up to 0.17 for Roelands' law with 1e-8 1/Pa at 0.2 Pa s, whose
+actual share is larger. The mean pressure is a worse measure: at the end it is 0.2 to 0.9 of 1 / alpha.
 """
 
 from __future__ import annotations
@@ -37,14 +37,16 @@ from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.thrust import ThrustEvaluation, no_film
 from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status, warn_user
 
-# Share of the end of a pressure law from which on a film is told to be near it, at three quarters of its largest load,
-# and the exponent above. A smaller share also tells of films that pressure laws are made for: half of the load is
+# Share of the end of a pressure law above which a film causes a warning, at three quarters of its largest load;
+# exponent of the formula above. A smaller share would warn of normal films with a pressure law too: half of the load is
 # reached at a peak pressure of 1 / alpha, 50 MPa.
 NEAR_END, EXPONENT = 0.9, 0.65
-# Mean over peak pressure below which no film is.
+# Smallest ratio of mean and peak pressure of any film. If the mean pressure is below this share of the limit of the
+# peak pressure, the peak is not computed.
 SHARE = 0.01
-# Tilting dominates where the eccentricity ratio at an end exceeds both: this many times that of the mid-plane (from 2
-# on most of it is tilt), and this value (1 touches). Larger values hold the advice back.
+# Messages advise about tilting first if the eccentricity ratio at an end exceeds both: this multiple of that in the
+# mid-plane (from 2 on most of it comes from tilt), and this value (at 1 the surfaces touch). Larger: advised less
+# often.
 TILTED, NEAR = 2.0, 0.8
 
 
@@ -60,14 +62,14 @@ class Failures:
     Attributes
     ----------
     largest_force, largest_pressure : float
-        Beyond which an accepted step ends the run, N and Pa; infinite and `HIGHEST_PEAK` unless told otherwise.
+        Limits above which an accepted step ends the run, N and Pa; infinite and `HIGHEST_PEAK` by default.
     near_end : float
         Peak pressure close to the end of the oil's pressure law, Pa; infinite where surfaces deflect, or without a law.
     axes : int
-        In how many directions the film damps.
+        Number of directions in which the film has damping.
     refused : dict
-        Reason of every step of the run that was repeated with a smaller size, by its start and its end, s; one for all
-        joints of a run of this package.
+        Reason why a step of the run was repeated with a smaller size, by its start and its end, s. All joints share one
+        dict in a run that a function of this package has started.
     """
 
     axes = 2
@@ -77,21 +79,21 @@ class Failures:
         self.name, self.bearing = name, bearing
         self.bore, self._per_force = BoreGap(bearing), mean_pressure(bearing, 1.0)
         self.largest_force, self.largest_pressure = math.inf, HIGHEST_PEAK
-        # bearings of own models need not name their oil
+        # bearings of a user's models may have no lubricant
         law = self._law = transform_of(bearing.lubricant) if getattr(bearing, "yielding", bearing) is None else None
         self.near_end = math.inf if law is None else float(np.interp(NEAR_END * law.q[-1], law.q, law.p))
 
     def blame(self, start: float, time: float, reason: str) -> None:
-        """Note that this film refuses a step; not where another has, whose nan comes back in all films."""
+        """Store that this film rejects a step, unless another film has: its nan appears in the states of all films."""
         self.refused.setdefault((start, time), f"in '{self.name}' {reason}")
 
     def ask(self, start: float, time: float, last: float) -> None:
-        """Note that a solver asks for a step; one that ends before the ``last`` one, s, repeats that without a film."""
+        """Store a step tried by a solver: one that ends before the ``last`` one, s, repeats it with a smaller size."""
         if time < last:
             self.refused.setdefault((start, last), "Newton's method did not converge")
 
     def no_film(self, time: float, trial: Trial, *, explicit: bool) -> FilmError:
-        """The film can't be evaluated, and the solver can't repeat the step."""
+        """Error of a film that cannot be evaluated, if the solver cannot repeat the step."""
         if trial.faces is not None and trial.faces.status is not Status.CONVERGED:
             where = f"LubricatedJoint '{self.name}' can't be evaluated at t = {time:.9g} s"
             return FilmError(no_film(trial.faces, where))
@@ -107,12 +109,12 @@ class Failures:
         return FilmError(f"LubricatedJoint '{self.name}' {message}")
 
     def warn_of_end(self, time: float, trial: Trial) -> None:
-        """Warn that the state at which a run has ended has no film."""
+        """Warn that the last state of a run has no film."""
         text = f"{self.no_film(time, trial, explicit=False)} The run ended there: history leaves this state out."
         warn_user(text, UserWarning)
 
     def no_mass(self) -> InputError:
-        """Modes without mass under an explicit solver, which would integrate their numerical mass."""
+        """Error of massless modes under an explicit solver, which would integrate their numerical mass."""
         kind = type(self.bearing.yielding if self.bearing.journal is None else self.bearing.journal).__name__
         return InputError(
             f"LubricatedJoint '{self.name}': the modes of its {kind} have no mass, which explicit solvers can't "
@@ -121,7 +123,10 @@ class Failures:
         )
 
     def chatter(self, time: float, trial: Trial, *, step: float, miss: float) -> FilmError:
-        """An explicit solver's ``step`` (s) beyond its stability limit; its rates miss its motion by ``miss`` (m)."""
+        """Error of an explicit solver whose ``step`` (s) exceeds its stability limit.
+
+        ``miss`` (m): displacement in the step minus the integral of the rates.
+        """
         damping = -trial.found.tangent()[: self.axes, 4 : 4 + self.axes]
         largest = float(np.linalg.eigvalsh(0.5 * (damping + damping.T))[-1])
         return self._at(
@@ -134,11 +139,11 @@ class Failures:
         )
 
     def absurd(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
-        """The state of an accepted step is none of a bearing; None if it is one."""
+        """Error of an accepted step that no bearing can have; None if the step is valid."""
         film = getattr(trial.evaluation, "film", None)
         if message := seized(getattr(film, "walls", None)) or outside_table(film):
             return self._at(time, message)
-        # that of film and contacts where it is larger or alone known
+        # the mean pressure of film and contacts, if it is larger than the peak or if there is no peak
         pressure = max(self._mean(row[FORCE]), float(row[PEAK_PRESSURE]))
         if pressure > self._bearable:
             return FilmError(self.overloaded(time, row, trial.motion))
@@ -146,7 +151,7 @@ class Failures:
         return on_faces or self._beyond_limit(time, row, trial, pressure) or self._pressed_through(time, trial)
 
     def _absurd_faces(self, time: float, faces: ThrustEvaluation) -> FilmError | None:
-        """A collar pressed through its contact by more than any explains, or with what no steel bears."""
+        """Error of a collar that penetrates its contact too deeply, or with too high a pressure; None if valid."""
         gap, peak = faces.minimum_gap, faces.quantities()["thrust_peak_pressure"]
         assert self.bearing.thrust is not None
         if gap < -self.bearing.thrust.clearance:
@@ -175,7 +180,7 @@ class Failures:
 
     @property
     def _bearable(self) -> float:
-        """Pressure beyond which smaller steps are tried, Pa; lower limits of the user end runs at once."""
+        """Pressure above which smaller steps are tried, Pa; a lower limit of the user ends the run at once."""
         return max(HIGHEST_PEAK, self.largest_pressure)
 
     def _mean(self, force: np.ndarray) -> float:
@@ -183,7 +188,7 @@ class Failures:
         return math.hypot(*force.tolist()) * self._per_force
 
     def thrown(self, time: float, trial: Trial, force: float, mean: float) -> FilmError:
-        """A run that rings with forces many times as large as their ``mean``, N, over three steps."""
+        """Error of a run that rings with a ``force``, N, many times as large as its ``mean``, N, over three steps."""
         return self._at(
             time,
             f"the film's force is out of all proportion to the inertia and loads at hand: it alternates from step to "
@@ -194,7 +199,7 @@ class Failures:
         )
 
     def _beyond_limit(self, time: float, row: np.ndarray, trial: Trial, peak: float) -> FilmError | None:
-        """The film of an accepted step exceeds what the user allows; None if it does not."""
+        """Error of an accepted step whose film exceeds a limit of the user; None if it does not."""
         force = float(np.linalg.norm(row[FORCE]))
         if not (force > self.largest_force or peak > self.largest_pressure):
             return None
@@ -206,12 +211,12 @@ class Failures:
         )
 
     def check_heat(self, time: float, trial: Trial, memory: History | None, limit: float) -> float:
-        """Warn of a film hotter than ``limit`` (K), which oil does not bear for long; the limit from now on.
+        """Warn of a film hotter than ``limit`` (K), which oil does not bear for long; return the limit of later calls.
 
         Raises
         ------
         FilmError
-            Where the film is no oil.
+            If the film is hotter than any oil.
         """
         T = getattr(memory, "temperature", None)
         film = None if T is None else getattr(trial.evaluation, "film", None)
@@ -227,7 +232,7 @@ class Failures:
         return HOTTEST
 
     def warn_of_memory(self, start: float, end: float) -> None:
-        """A run starts elsewhere than the run before has started and ended."""
+        """Warn that a run starts at a state that is neither the start nor the end of the previous run."""
         warn_user(
             f"LubricatedJoint '{self.name}': the run from t = {start:.9g} s starts at a state that no run has led to; "
             f"its film goes on with what it remembers of t = {end:.9g} s (oil content, wear, temperature, deflection). "
@@ -236,7 +241,7 @@ class Failures:
         )
 
     def _pressed_through(self, time: float, trial: Trial) -> FilmError | None:
-        """The journal is so deep in a rigid bore that no contact explains it; None if it is not."""
+        """Error of a journal that is deeper in a rigid bore than any contact explains; None if it is not."""
         bearing = self.bearing
         if getattr(bearing, "bush", None) is not None:
             return None
@@ -251,12 +256,12 @@ class Failures:
         )
 
     def overload(self, row: np.ndarray) -> float:
-        """Pressures of an accepted step over what a material bears, or over the near end of a pressure law."""
-        # films without a peak have nan
+        """Largest ratio of a pressure of an accepted step to its limit: by materials, or near a pressure law's end."""
+        # nan for film models without a peak pressure
         return max(self._mean(row[FORCE]) / HIGHEST_MEAN, float(row[PEAK_PRESSURE]) / min(HIGHEST_PEAK, self.near_end))
 
     def overloaded(self, time: float, row: np.ndarray, motion: np.ndarray) -> str:
-        """Return the message for an accepted step near the end of a pressure law, or beyond what oil and steel bear."""
+        """Return the message for an accepted step near a pressure law's end, or above the limits of oil and steel."""
         force, mean, peak = float(np.linalg.norm(row[FORCE])), self._mean(row[FORCE]), float(row[PEAK_PRESSURE])
         if self._law is not None and self.near_end < peak <= HIGHEST_PEAK and mean <= HIGHEST_MEAN:
             left = 1.0 - float(np.interp(peak, self._law.p, self._law.q)) / self._law.q[-1]
@@ -283,7 +288,7 @@ class Failures:
         return FilmError(f"LubricatedJoint '{self.name}' at t = {time:.9g} s: {message}")
 
     def place(self, motion: np.ndarray) -> str:
-        """Describe the journal's position at a motion (10,), followed by `tilting`; messages put advice behind it."""
+        """Describe the journal's position at a motion (10,), followed by `tilting`, for messages."""
         bearing = self.bearing
         mid, largest = eccentricity_ratios(motion, bearing.radial_clearance, bearing.length)
         gap, is_pad = self.bore.smallest(motion), getattr(bearing, "thrust", None) is bearing
@@ -292,7 +297,7 @@ class Failures:
         return "" if is_pad else f"{ratios}, minimum gap of the rigid surfaces {gap:.6g} m; {self.tilting(motion)}"
 
     def tilting(self, motion: np.ndarray) -> str:
-        """Advice for a journal at a motion (10,) that touches by its tilt, before all other; empty for another."""
+        """Advice for a journal that touches because of its tilt, at a motion (10,); empty if it does not."""
         mid, largest = eccentricity_ratios(motion, self.bearing.radial_clearance, self.bearing.length)
         if largest <= max(TILTED * mid, NEAR):
             return ""

@@ -1,19 +1,19 @@
 """The film element on the bore nodes of a nodal bush.
 
-The bore's displacement is that of its nodes against where the housing's joint frame would carry them, in that frame;
-normals are fixed in the frame. The nodal loads of pressure and shear are the shape functions' transpose of their forces
-at the film's vertices (`exudyn_ehd.joint.tangent.nodes`). What the film's wrench has beyond them is spread over the
-bore's nodes as ``w (a + b x r)``, with a and b from force and moment, so that journal and bush receive exactly opposite
-forces and moments, at any displacement: the small moments of forces on displaced points, and the shear's net force
-across the axis, clearance over radius of the load, which the wrench of a film leaves out as its Reynolds equation does.
-The housing itself is loaded through the bush.
+The bore's displacement is that of its nodes from their positions in the housing's joint frame, in this frame; normals
+are fixed in the frame. The nodal loads are the transpose of the shape functions times the forces of pressure and shear
+at the film's vertices (`exudyn_ehd.joint.tangent.nodes`). They differ from the film's wrench by small moments of forces
+on displaced points, and by the net shear force across the axis. This force has the size clearance over radius times the
+load, and a wrench by the Reynolds equation omits it. The difference is spread over the bore's nodes as
+``w (a + b x r)``, with a and b from force and moment. So journal and bush get exactly opposite forces and moments, at
+any displacement. The housing is loaded only through the bush.
 
-The film element on a flexible bore: a third block of coordinates besides those of housing and journal.
+The film element on a flexible bore has a third block of coordinates, in addition to those of housing and journal.
 
 Modal bush: one NodeGenericODE2 holds the coordinates q of static modes in the housing's joint frame, those of an
-elastic journal behind those of the bore. Their force is ``Q - K q``. The film's wrench on the housing stays the
-opposite of the journal's, since the modes' forces are internal to bush and journal: force and moment on journal and
-housing cancel exactly. The housing's body has the bush's mass, at its undeformed place.
+elastic journal after those of the bore. Their force is ``Q - K q``. The film's wrench on the housing is the opposite of
+that on the journal, since the modes' forces are internal to bush and journal: force and moment on journal and housing
+cancel exactly. The housing's body contains the mass of the undeformed bush.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ from exudyn_ehd.status import Status
 
 
 def elastic(trial: Trial) -> ElasticEvaluation:
-    """Evaluation of a film on a bore with coordinates of its own."""
+    """Evaluation of a trial's film on a flexible bore."""
     assert isinstance(trial.evaluation, ElasticEvaluation)
     return trial.evaluation
 
@@ -75,8 +75,8 @@ class ModalFilmElement(FilmElement):
         super().__init__(model, housing, journal, name, nodes)
         self.bore, self.modes = bore, bore.modes
         self.stiffness = bore.stiffness
-        # of a solver unknown: its step, how often it has asked there, whether at its start, and how many steps in a row
-        # were an explicit solver's
+        # for an unknown solver: its step, number of calls in it, whether it has called at the start of the step, and
+        # number of successive steps with the calls of an explicit solver
         self._step = self._asked = self._in_a_row = 0
         self._at_start = False
 
@@ -99,8 +99,8 @@ class ModalFilmElement(FilmElement):
     def _find_out(self, step: int, at_start: bool) -> None:
         """Raise `InputError` if a solver that is not stored proves explicit.
 
-        Explicit solvers ask at the start of every step, or (velocity Verlet) once at its end; implicit ones twice and
-        more, at its end.
+        Explicit solvers evaluate the force at the start of every step, or (velocity Verlet) once at its end; implicit
+        solvers evaluate it at least twice at the end.
         """
         if step == self._step:
             self._asked += 1
@@ -119,7 +119,7 @@ class ModalFilmElement(FilmElement):
         return np.concatenate((self._wrench_map() @ evaluation.wrench, evaluation.bore_load - held))
 
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        # of wrench and loads on the modes, combined by f_q and f_qt
+        # tangent of wrench and loads on the modes, combined by f_q and f_qt
         T, n, k = elastic(trial).combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
         own, whole = np.ascontiguousarray(T[:6, :MOTION_SIZE]), np.empty((n + k, n + k))
         stiffness, damping, by_place, by_rate = self._rigid_derivatives(mbs, trial, own)
@@ -130,7 +130,7 @@ class ModalFilmElement(FilmElement):
         return whole
 
     def bush_displacement(self, trial: Trial, configuration: exu.ConfigurationType) -> np.ndarray | None:
-        """Displacement (k, 3) of the bush's mesh at the last trial; None without one: a body shows itself."""
+        """Displacement (k, 3) of the bush's mesh at the last trial; None without a bush, or on a user's body."""
         if not isinstance(self.modes, BoreModes):
             return None
         return np.tensordot(elastic(trial).bore.coordinates[: self.modes.count], self.modes.displacements, 1)
@@ -139,8 +139,8 @@ class ModalFilmElement(FilmElement):
 class TurningFilmElement(ModalFilmElement):
     """Film on a finite-element journal, whose body has nodes, mass and stiffness for the modes that turn with it.
 
-    Force and Jacobian are those of a modal bush, but for the angle phi of the journal, atan2 of its frame's x in the
-    joint frame, at which the film finds the modes: ``d phi = n . (d turn of the journal - d turn of the housing)``.
+    Force and Jacobian are those of a modal bush, with an additional dependence on the angle phi of the journal, the
+    atan2 of its frame's x in the joint frame: ``d phi = n . (d turn of the journal - d turn of the housing)``.
     """
 
     model: TurningModel
@@ -180,7 +180,7 @@ class NodalFilmElement(FilmElement):
         bush: FlexibleBush,
     ) -> None:
         super().__init__(model, housing, journal, name, nodes)
-        # the system holds this element: it must not keep the system alive
+        # weak reference: the system refers to this element, which must not keep the system alive
         self.bush = dataclasses.replace(bush, mbs=weakref.proxy(bush.mbs))
         self.reference = bush.solid.mesh.nodes[bush.mesh.bore.nodes]
         self.place = bush.mesh.bore.positions
@@ -198,7 +198,7 @@ class NodalFilmElement(FilmElement):
         return d[:, :2].ravel(), (self.drift @ A[:, :2]).ravel()
 
     def bush_displacement(self, trial: Trial, configuration: exu.ConfigurationType) -> np.ndarray:
-        """Displacement (k, 3) of the bush's mesh against the housing, to whose frame the sides were brought."""
+        """Displacement (k, 3) of the bush's mesh against the housing; the sides must be updated."""
         frame = self.sides[0].frame
         positions = self.bush.solid.mesh.nodes + self.bush.displacements(configuration)
         return (positions - frame[:, 3]) @ frame[:, :3] - self.bush.mesh.nodes
@@ -212,7 +212,7 @@ class NodalFilmElement(FilmElement):
     def _quantities(self, evaluation: JointEvaluation) -> dict[str, float]:
         assert isinstance(evaluation, ElasticEvaluation)
         out = dict(evaluation.quantities())
-        # the model knows the work on the radial displacement only, not that of the spread forces
+        # the model includes only the work on the radial displacement, not that of the spread forces
         rest = self.nodal_forces(evaluation)
         rest[:, :2] -= evaluation.bore_load.reshape(-1, 2)
         out["power_loss"] -= float(np.sum(rest * (self.drift @ self.sides[0].frame[:, :3])))
@@ -230,7 +230,7 @@ class NodalFilmElement(FilmElement):
     def operator(
         self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> Callable[[np.ndarray], np.ndarray] | None:
-        """The matrix of `jacobian` as an operator, valid until the film's next evaluation; None if there is no film."""
+        """Return `jacobian` as an operator, valid until the film's next evaluation; None without a film."""
         trial = self._try(mbs, q, q_t, CURRENT, t)
         if trial.status != Status.CONVERGED:
             return None
@@ -272,14 +272,16 @@ class NodalFilmElement(FilmElement):
 
 
 class NodalJacobian:
-    """Minus (f_q dQ/dq + f_qt dQ/dq_t) of a film on a nodal bush: a matrix, or an operator of one film solve each.
+    """Minus (f_q dQ/dq + f_qt dQ/dq_t) of a film on a nodal bush, as a matrix or as an operator.
+
+    A product with the operator needs one film solve.
 
     Parameters
     ----------
     element : NodalFilmElement
     mbs : exudyn.MainSystem
     trial : Trial
-        The last one of the element.
+        Last trial of the element.
     f_q, f_qt : float
     """
 
@@ -294,7 +296,7 @@ class NodalJacobian:
         x = element.arms @ self.frame
         self.spread, self.resultant = spread_matrix(x), resultant(x)
         place, drift = element._housing_maps()
-        # the rate in the turning frame changes with the place as -omega x u
+        # in the rotating frame, the rate depends on the displacement u by -omega x u
         along, turning = self.frame[:, :2].T, self.frame[:, :2].T @ -relative.skew(omega)
         self.place = element.bore_map(f_q * place, f_q * along)
         self.rate = element.bore_map(f_q * drift + f_qt * place, f_q * turning + f_qt * along)

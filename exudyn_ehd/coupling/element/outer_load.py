@@ -1,33 +1,34 @@
-"""Load on a film from everything else: inertia of the bodies less the film's own force.
+"""Load on a film by the rest of the system: inertia of the bodies minus the film's force.
 
-The journal moves against its housing by x'' = W (F + L), with the film's force F, the load L and the inverse W of the
-mass that a force between the two bodies feels, W = J M^-1 J^T with the Jacobian J of the relative motion. So
+The journal moves relative to its housing by x'' = W (F + L), with the film's force F and the load L. W = J M^-1 J^T is
+the inverse of the mass that resists a force between the two bodies, J is the Jacobian of the relative motion. So
 
     L = W^-1 J q'' - F
 
-follows from an accepted state alone, with the accelerations that the equations of motion demand there. What alternates
-between film and inertia from step to step cancels in L; a load that jumps does not. The momentum that a step has
-missed is W^-1 J (q'1 - q'0 - integral of q''). It is kept with the trapezoid; the record knows what parabolas add,
-also behind a restart. Constraints and terms of the second order in
-the rates are left out of W and of J q'': they change smoothly. Only rigid bodies and mass points in one or two films
-have a mass here; with any other body at the joint L = -F, the load on a film that outweighs the inertia. A body that
-other films hold, whose damping a film alone does not know, has none either. So with a crankshaft in more films: with
-its whole mass on each of them, errors of 0.2 % in seven films were told as 20 to 50 %. So with a floating ring, which
-has films inside and outside at the same place: with its mass, errors of 18 % in the inner film were told as 14 000 %,
-without as 10 %.
+follows from an accepted state alone, with the accelerations that satisfy the equations of motion there. Alternations of
+film force and inertia from step to step cancel in L; a jump of the load does not. The local error of the momentum in a
+step is W^-1 J (q'1 - q'0 - integral of q''). It is stored with the trapezoidal integral; the correction by parabolas
+follows from the record, also after a restart. Constraints and terms of second order in the rates are omitted in W and
+in J q'', because they change smoothly.
+
+Only rigid bodies and mass points in one or two films have a mass here. With any other body at the joint L = -F, the
+load on a film for which inertia is negligible. A body in more films has no mass either, because one film does not
+account for the damping of the others. Examples: a crankshaft in seven films, with its whole mass on each of them:
+errors of 0.2 % were estimated at 20 to 50 %. A floating ring, with films inside and outside at the same place: errors
+of 18 % in the inner film were estimated at 14 000 % with its mass, and at 10 % without.
 
 Loads of a system that are functions of time, and their impulse within a step
 -----------------------------------------------------------------------------
-Accepted states know a load f at both ends of a step h only. The user functions of the loads are called within it where
-the load departs from the line through the two states before, by d at the end of the step. Their impulse beyond that of
-the chord, over d h,
+Accepted states contain a load f at both ends of a step h only. If the load deviates from the line through the two
+states before, by d at the end of the step, the user functions of the loads are called within the step. Their impulse
+minus that of the chord, over d h,
 
     offset = d . (mean(f) - (f0 + f1) / 2) / d^2,
 
-is 1/2 - u for a jump at the share u of the step. The load L on a film follows the loads linearly, through whatever
-bodies and joints lie between: its impulse beyond the chord is the offset times its own departure, times the step. With
-several functions the offset is that of all of them together. A ramp that begins or ends within the step lasts a share
-of it: the even change whose time has the same variance as that of the loads. A jump is found by bisection, to 1/1000 of
+is 1/2 - u for a jump at the fraction u of the step. The load L on a film depends linearly on the loads, whatever bodies
+and joints lie between. So its impulse minus that of the chord is the offset times the deviation of L, times the step.
+Several functions have one common offset. A ramp that begins or ends within the step takes a fraction of it: that of a
+linear change whose time has the same variance as the change of the loads. A jump is found by bisection, to 1/1000 of
 the step; a pulse shorter than 1/16 of a step may lie between the samples.
 """
 
@@ -51,12 +52,13 @@ from exudyn_ehd.status import SMALL
 
 UNKNOWN = FilmLoad.of(np.full(sum(LOAD_COLUMNS), np.nan))
 _LoadState: TypeAlias = tuple[float, np.ndarray, np.ndarray]
-# Samples within a step; a pulse is seen if it is longer than a step over their number. Each costs a call of every load.
+# Number of samples within a step. A pulse is found if it is longer than the step over this number. Each sample costs a
+# call of every load function.
 SAMPLES = 16
 # Halvings of the part with the largest change: with 6 a jump is found to 1 / (16 * 2^6) of the step.
 BISECTIONS = 6
-# Departure over the largest value from which steps do not resolve a load, 14 steps in a period: (2 pi / 14)^2. Larger
-# values leave more of the ends of short pulses to the estimate of jumps at unknown places.
+# Deviation over the largest value, above which the steps do not resolve a load: (2 pi / 14)^2, 14 steps in a period.
+# Larger values treat more ends of short pulses as jumps at unknown times.
 UNRESOLVED = 0.2
 
 
@@ -76,21 +78,21 @@ class LoadFunctions:
             function = data[f"{name}UserFunction"]
             if isinstance(function, dict) and callable(function["function"]):
                 self.calls.append((function["function"], np.asarray(data[name]).tolist()))
-        # times and values of the last four accepted states, and whether the loads have departed in the last step
+        # times and values of the last four accepted states, and whether the loads have deviated in the last step
         self.times, self.values = np.empty(0), np.empty((0, 0))
         self.departed = False
 
     def accept(self, mbs: exu.MainSystem, time: float) -> None:
-        """Go on behind an accepted state."""
+        """Store the values at an accepted state."""
         if self.calls:
             times, values = self._states(mbs, time)
             self.departed = self._departs(times, values)
             self.times, self.values = times, values
 
     def offset(self, mbs: exu.MainSystem, time: float) -> tuple[float, float]:
-        """Offset in the step from the last accepted state to a time, and the share of the step in which loads change.
+        """Offset in the step from the last accepted state to a time, and fraction of the step in which loads change.
 
-        Both are nan where the loads go on as before.
+        Both are nan if the loads do not deviate.
         """
         if not self.calls:
             return math.nan, math.nan
@@ -103,7 +105,7 @@ class LoadFunctions:
         return float(beyond @ off / (off @ off)), lasting
 
     def largest_change(self, mbs: exu.MainSystem, time: float) -> tuple[float, float]:
-        """Largest impulse beyond the chord over the load's size and the step, and time of the largest change.
+        """Largest impulse minus that of the chord, over the load's size and the step, and time of the largest change.
 
         The step is the one from the last accepted state to a time.
         """
@@ -123,7 +125,7 @@ class LoadFunctions:
         return np.append(self.times[before], time), np.array([*self.values[before], self._at(mbs, time)])
 
     def _departs(self, times: np.ndarray, values: np.ndarray) -> bool:
-        """Return whether the loads depart from their line all at once, see `SUDDEN`, or are not resolved."""
+        """Return whether the loads deviate suddenly from their line, see `SUDDEN`, or are not resolved by the steps."""
         if len(times) < 4:
             return False
         sizes = np.linalg.norm(departure(times, values), axis=1)[2:]
@@ -131,10 +133,9 @@ class LoadFunctions:
         return bool(last < SUDDEN * now or sizes[1] > UNRESOLVED * np.abs(values).max())
 
     def _impulse(self, mbs: exu.MainSystem, time: float) -> tuple[np.ndarray, np.ndarray, float, float]:
-        """Mean values (k,) beyond those of the chord, largest values (k,), and time of the largest change.
+        """Mean values (k,) minus those of the chord, largest values (k,), time of the largest change, and its duration.
 
-        Last the share of the step in which the loads change, 0 for a jump: that of the even change with the same
-        variance of its time.
+        The duration is a fraction of the step, 0 for a jump: that of a linear change whose time has the same variance.
         """
         start = float(self.times[self.times < time][-1])
         step = time - start
@@ -150,7 +151,7 @@ class LoadFunctions:
             is_behind = (self._at(mbs, half)[which] > middle) == (change[part, which] > 0.0)
             left, right = (left, half) if is_behind else (half, right)
         place = 0.5 * (left + right)
-        # samples stand for equal parts of the step: a jump moves the border between two of them
+        # each sample represents an equal part of the step; the border between two parts is moved to a jump
         borders = np.arange(SAMPLES + 1) / SAMPLES
         borders[part] = (place - start) / step
         whole = values[-1] - values[0]
@@ -168,12 +169,12 @@ class OuterLoad:
     sides : (Side, Side)
         Housing and journal.
     parts : tuple of MotionPart
-        Parts of the wrench that do not share a mass.
+        Parts of the wrench with separate masses.
 
     Attributes
     ----------
     load : FilmLoad
-        At the state taken last, its arrays without the axis of the states.
+        Load at the last state; its arrays have no axis for the states.
     functions : LoadFunctions or None
         Loads of the system that are functions of time, from the first state of a run on.
     """
@@ -184,7 +185,7 @@ class OuterLoad:
         self.begin(None)
 
     def begin(self, solver: exudyn_solvers.Solver | None) -> None:
-        """Begin a run of ``solver``: masses are read at its first state, loads are known in implicit runs."""
+        """Begin a run of ``solver``: masses are read at its first state; loads are computed in implicit runs only."""
         # W^-1 of all parts
         self.mass: np.ndarray | None = None
         self.functions: LoadFunctions | None = None
@@ -195,13 +196,13 @@ class OuterLoad:
         self.before: _LoadState | None = None
 
     def take(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> None:
-        """Keep the load at a state, an accepted one."""
+        """Store the load at an accepted state."""
         begins = self.functions is None
         self.load = self.at(mbs, where, trial)
         if self.functions is not None:
             time = mbs.systemData.GetTime(where)
             self.functions.accept(mbs, time)
-            # a run may begin with accelerations that no equations demand
+            # the accelerations at the start of a run may not satisfy the equations of motion
             if self.is_heavy and not begins:
                 self.before, self.state = self._before(time), self._state(mbs, where, time)
 
@@ -211,13 +212,13 @@ class OuterLoad:
         return time, np.asarray(rates)[places], np.asarray(demanded)[places]
 
     def _before(self, time: float) -> _LoadState | None:
-        """The state accepted before a time; the end of a run is taken more than once."""
+        """Return the last accepted state before a time; the end of a run may be stored more than once."""
         return self.state if self.state is not None and self.state[0] < time else self.before
 
     def at(self, mbs: exu.MainSystem, where: exu.ConfigurationType, trial: Trial) -> FilmLoad:
-        """Load at a state to which the sides' arrays and the film of ``trial`` belong, joint frame.
+        """Load at a state, joint frame; the sides' arrays and the film of ``trial`` must belong to this state.
 
-        nan without a film.
+        It is nan without a film.
         """
         if not self.is_known or trial.evaluation is None:
             return UNKNOWN
@@ -256,7 +257,7 @@ class OuterLoad:
         )
 
     def _mass(self, mbs: exu.MainSystem, J: np.ndarray) -> np.ndarray:
-        """W^-1 of all parts, zero where a body's mass is not known; sets the masses (6,) of `FilmLoad`."""
+        """W^-1 of all parts, zero if a body's mass is unknown; sets the masses (6,) of `FilmLoad`."""
         W, size = np.zeros((6, 6)), self.sides[0].size
         held = [(int(n), int(k)) for k, data in objects_of(mbs) for n in data.get("nodeNumbers", ())]
         mass, self.masses = np.zeros((len(self.rows), len(self.rows))), np.zeros(6)

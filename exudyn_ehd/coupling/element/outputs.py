@@ -1,21 +1,20 @@
 """The bearing in Exudyn's renderer: a ring of the housing or the modal bush, and the film in it.
 
-The journal has its true radius; the clearance is drawn as a tenth of it, and with it the film's thickness and the
-bore's deflection, by the same factor. So the film is a layer between the bore and a journal that is as eccentric in
-it as in truth. Its pressure is in colours: on the bore, and at its ends the largest one along the axis.
+The journal has its true radius. The clearance is drawn as a tenth of it; film thickness and bore deflection are
+magnified by the same factor. So the film is a layer between the bore and a journal with the true eccentricity ratio.
+Colours show the pressure on the bore, and on the film's ends the largest pressure along the axis.
 
 Exudyn asks for the picture only while a renderer runs, or for an image of its ray tracer
 (``SC.renderer.RedrawAndGetImage(True)``, which needs no display). The first time it does, the film element begins to
-hand over the pressure of every accepted step; before that nothing is stored. Within a run, drawing never evaluates the
-film, whose last evaluation belongs to the solver; outside of one it shows the film of the present state.
+store the pressure of every accepted step; before that nothing is stored. During a run, drawing does not evaluate the
+film, because the solver needs its last evaluation. Outside of a run it shows the film of the present state.
 
 Sensors of Exudyn that read a joint: quantities of its film, and what Exudyn's own joints give
 ----------------------------------------------------------------------------------------------
-The latter are those of a joint whose first marker is on the housing and whose second is on the journal: what is local
-is in the housing's joint frame A0, loads are those that the journal hands on to the housing (minus those on the
-journal), of films, thrust faces and constraint together. Torques are vectors about the bearing's centre, as Exudyn's
-spring-dampers have them; ``TorqueLocal`` of its ideal joints holds multipliers, of ``CreateRevoluteJoint``
-(-M_y, M_x).
+The latter are those of a joint whose first marker is on the housing and whose second is on the journal. Local values
+are in the housing's joint frame A0. Loads are those of the journal on the housing (minus those on the journal), by
+films, thrust faces and constraint together. Torques are vectors about the bearing's centre, as for Exudyn's
+spring-dampers. ``TorqueLocal`` of its ideal joints contains multipliers, for ``CreateRevoluteJoint`` (-M_y, M_x).
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ from exudyn_ehd.solid.elements.element import face_of
 from exudyn_ehd.status import InputError, Status
 
 _VISUALIZATION = exu.ConfigurationType.Visualization
-# Colour of the housing's ring or the bush, through which the film is seen.
+# Transparent colour (RGBA) of the housing's ring or the bush.
 GREY = [0.72, 0.74, 0.78, 0.2]
 
 
@@ -53,7 +52,7 @@ class FilmDisplay:
     Attributes
     ----------
     wanted : bool
-        Whether a renderer has asked.
+        True after a renderer has asked for the picture.
     clearance : float
         Size of the drawn clearance, or of a larger deflection of the bore, over the journal's radius; 0.1 by default,
         0 draws the true size.
@@ -71,7 +70,7 @@ class FilmDisplay:
         self._housing: Side | None = None
 
     def take(self, trial: Trial) -> None:
-        """Store what is drawn of a film, the last that was evaluated."""
+        """Store the data for drawing a film, which must be the last evaluated one."""
         film = getattr(trial.evaluation, "film", None)
         if film is None:
             return
@@ -84,7 +83,7 @@ class FilmDisplay:
         self.bore = model.bore.without_journal(film.bore.coordinates)
         self.largest = max(self.largest, float(np.abs(film.bore.displacement).max()) * clearance)
         modes: Any = getattr(model.bore, "modes", None)
-        # finite-element bodies show themselves
+        # finite-element bodies are drawn by Exudyn
         if modes is not None and hasattr(modes, "mesh"):
             self.bush = np.tensordot(film.bore.coordinates[: modes.count], modes.displacements, 1)
 
@@ -144,12 +143,12 @@ class FilmDisplay:
         """Radii (n, m) of the bore as drawn."""
         model: Any = self.element.model
         grid, bearing = model.grid, model.bearing
-        # a polygon about the bore, not in it: its chords would cut through the journal
+        # a polygon around the bore: the chords of one in the bore would cut through the journal
         radius = (bearing.journal_radius + scale * bearing.radial_clearance) / np.cos(0.5 * grid.width_x.max())
         return np.full(grid.shape, radius) if self.bore is None else radius + scale * self.bore
 
     def _frame(self, mbs: exu.MainSystem) -> np.ndarray:
-        """Joint frame (3, 6) of the housing in the shown state; the element's own arrays belong to the solver."""
+        """Joint frame (3, 6) of the housing in the shown state, without changing the element's work arrays."""
         if self._housing is None:
             self._housing = copy.deepcopy(self.element.sides[0])
         q, q_t = (np.array(values[: self._housing.size]) for values in self.element.read(mbs, _VISUALIZATION))
@@ -185,7 +184,7 @@ def _points(frame: np.ndarray, theta: np.ndarray, radii: np.ndarray, places: np.
 def ring_triangles(n: int, m: int, *, last: Sequence[int] | np.ndarray = ()) -> np.ndarray:
     """Triangles (2 n (m - 1), 3) of a ring of n x m vertices, numbered row by row; normals point outward.
 
-    There are none behind the ``last`` columns of arcs.
+    ``last``: columns at which arcs end; no triangles follow them.
     """
     columns = np.delete(np.arange(n), np.asarray(last, dtype=int))
     i, j = (index.ravel() for index in np.meshgrid(columns, np.arange(m - 1), indexing="ij"))
@@ -212,7 +211,7 @@ def _turn(h: np.ndarray, j: np.ndarray) -> np.ndarray:
 
 
 def _local(h: np.ndarray, j: np.ndarray, column: int) -> np.ndarray:
-    """Difference of a column of the frames, in the housing's."""
+    """Difference of a column of both frames, in the housing's frame."""
     return h[:, :3].T @ (j[:, column] - h[:, column])
 
 
@@ -250,12 +249,12 @@ def reader(
     known: Sequence[str],
     where: str,
 ) -> tuple[str, Callable[[exu.MainSystem], np.ndarray]]:
-    """Name of a quantity, and the function that reads it at a system's current state; nan without a film.
+    """Return the name of a quantity, and the function that reads it at the current state; nan without a film.
 
     Raises
     ------
     InputError
-        In the name of ``where``, for what is none of the ``known`` quantities.
+        In the name of ``where``, for a quantity that is not ``known``.
     """
     asked = getattr(quantity, "name" if isinstance(quantity, exu.OutputVariableType) else "value", quantity)
     if isinstance(asked, str) and asked in OUTPUTS:
@@ -277,7 +276,7 @@ def reader(
 def _sensed(
     mbs: exu.MainSystem, element: FilmElement, constraint: Index | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Frames (3, 6) of housing and journal, which are there once the film was asked, and the load (6,)."""
+    """Frames (3, 6) of housing and journal, after an evaluation of the film, and the load (6,)."""
     trial = element.current(mbs)[1]
     load = np.full(6, np.nan) if trial.status is not Status.CONVERGED else -trial.found.wrench
     if trial.faces is not None:
@@ -299,10 +298,9 @@ def add_sensor(
     file_name: str,
     write_to_file: bool,
 ) -> Index:
-    """Add a sensor of what a `reader` reads; its values are stored in the sensor.
+    """Add a sensor of the quantity of a `reader`; its values are stored in the sensor.
 
-    The sensor looks at the state Exudyn shows it, which after an accepted step is exactly the state the record gets, so
-    that both agree bit for bit.
+    After an accepted step the sensor reads exactly the state that is recorded, so that both are bit-identical.
     """
 
     def values(

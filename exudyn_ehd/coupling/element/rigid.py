@@ -2,12 +2,12 @@
 
 The element has no mass and shares the nodes of the two bodies. Its user functions get the coordinates q (without
 reference values) and q_t of those nodes, housing's first, and return the generalized force Q on the right-hand side and
-the derivative of -Q. The film is evaluated once per state. What was accepted is kept by `accepted_steps`, from the
-force user function alone; what can't be evaluated is explained by `failures`.
+the derivative of -Q. The film is evaluated once per state. `accepted_steps` records accepted steps, triggered by the
+force user function alone; `failures` has the messages for films that cannot be evaluated.
 
-Films on end faces are evaluated beside the journal's. They have the temperature that its film remembers, remember
-nothing else, and take the velocities as rates. Their heat is part of the balance of heat of the accepted steps. Their
-wrench acts on journal and housing, also where a bush yields under the journal's film.
+Films on end faces are evaluated together with the journal's film. They have the temperature in its memory, have no
+other memory, and use the velocities as rates. Their heat is part of the heat balance of accepted steps. Their wrench
+acts on journal and housing, also if the journal's film acts on a flexible bush.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class FilmElement:
     housing, journal : Side
         Carriers of the joint frame and of the journal's frame (z = its axis).
     name : str
-        For messages.
+        Name of the joint, for messages.
     bore_nodes : sequence
         Nodes of a flexible bore, whose coordinates follow those of housing and journal.
 
@@ -61,16 +61,16 @@ class FilmElement:
     faces : ThrustModel or None
         Films on the end faces.
     collars : Kinematics
-        Kinematics of the motion (11,) that the faces know; that of the journal without faces.
+        Kinematics of the motion (11,) for the faces; without faces that of the journal.
     failures : Failures
     is_massless : bool
-        Whether it has coordinates of its own whose mass is a numerical one.
+        True if the element has additional coordinates with a numerical mass only.
     evaluations : int
         Number of film evaluations.
     last : Trial or None
-        The state evaluated last, if it is still known.
+        The state evaluated last; None if it was dropped.
     kinematics, parts, messages
-        Kinematics of the motion that the film knows, its parts for errors of steps, class of its failures.
+        Kinematics of the film's motion, parts of the motion for errors of steps, class of its failures.
     """
 
     kinematics, parts, messages = relative.JOURNAL, step_error.JOURNAL, Failures
@@ -90,11 +90,11 @@ class FilmElement:
         self.presence: Presence
         self.faces: ThrustModel | None = None
         self.collars = relative.JOURNAL
-        # places of the coordinates in the system's, known once it is assembled
+        # indices of the coordinates in the system's vectors, known once it is assembled
         self._places: np.ndarray | None = None
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
-        """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
+        """User function of Exudyn: generalized force (n,) on the nodes; nan makes Exudyn try a smaller step."""
         start, steps, solvers = mbs.systemData.GetTime(START_OF_STEP), self.steps, exudyn_solvers.stored_solvers(mbs)
         if start != steps.start or solvers != steps.solvers:
             steps.accept(mbs, start, solvers)
@@ -127,10 +127,10 @@ class FilmElement:
         return jacobian
 
     def _refuses(self, t: float, trial: Trial) -> bool:
-        """Return whether the solver shall reject the step; raise if there is no film and the step can't be repeated.
+        """Return whether the step has to be rejected; raise if there is no film and the step cannot be repeated.
 
-        Beyond the end of a pressure law the film has forces that lead Newton's method back. Its first iterate may lie
-        there for any step size, if cavities have closed since the last step.
+        A film beyond the end of a pressure law is not rejected: its forces lead Newton's method back. The first iterate
+        may lie there for any step size, if cavities have closed since the last step.
         """
         if trial.status == Status.CONVERGED:
             return False
@@ -142,14 +142,14 @@ class FilmElement:
     def _try(
         self, mbs: exu.MainSystem, q: _Values, q_t: _Values, where: _Configuration, time: float, stepping: bool = True
     ) -> Trial:
-        """The film at a state, evaluated unless it is the last one; the sides' arrays are brought there.
+        """Return the film at a state, evaluated unless it is the last one; the sides' arrays are updated.
 
-        ``stepping`` says that the state ends a step; else the film takes the velocities as they are (a linearisation
-        after a run).
+        ``stepping``: the state is the end of a step. Otherwise (a linearisation after a run) the film uses the
+        velocities without correction.
         """
-        # a list compares as a whole; other callers than Exudyn may hand over arrays
+        # lists, which can be compared as a whole; other callers than Exudyn may pass arrays
         q, q_t = list(q), list(q_t)
-        # before the start of the step (a linearisation about the initial state after a run) nothing is remembered
+        # no memory before the start of the step (a linearisation about the initial state after a run)
         memory = self.steps.film_memory if time >= self.steps.start else None
         step = 0.0 if memory is None else time - self.steps.start
         begin = self.steps.begin if stepping else None
@@ -164,7 +164,7 @@ class FilmElement:
         bodies = motion = peeked[2] if peeked is not None and here else self._move(mbs, q, q_t, where)
         if begin is not None:
             motion = begin.film_motion(bodies, time)
-        # an interrupt may leave the model between two states: the trial before is no longer its own
+        # an interrupt may leave the model between two states, so that the last trial is not valid any more
         self.last = None
         trial = Trial(q, q_t, memory, step, begin, bodies, motion)
         # a sum is finite only if all its terms are
@@ -180,9 +180,9 @@ class FilmElement:
     def _move(
         self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
     ) -> np.ndarray:
-        """Motion at a state, to which the sides' frames and Jp, Jr are brought.
+        """Return the motion at a state, and update the sides' frames and Jp, Jr to it.
 
-        That of the rigid surfaces (10,), and behind it the coordinates and rates of a flexible bore (2 k,).
+        It is the motion of the rigid surfaces (10,), followed by the coordinates and rates of a flexible bore (2 k,).
         """
         if self._places is None:
             self._find_places(mbs)
@@ -193,7 +193,7 @@ class FilmElement:
         return np.concatenate((rigid, *self._bore_motion(np.array(q[n:]), np.array(q_t[n:]))))
 
     def _find_places(self, mbs: exu.MainSystem) -> np.ndarray:
-        """Bind the sides to a system, once it is assembled; the places of the element's coordinates."""
+        """Bind the sides to an assembled system; return the indices of the element's coordinates."""
         self.presence.require(mbs)
         bind(mbs, *self.sides)
         places = [place for node in self.nodes for place in mbs.systemData.GetNodeLTGODE2(int(node))]
@@ -201,7 +201,7 @@ class FilmElement:
         return self._places
 
     def _bore_motion(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates and rates of the bore in the film model from those of the bore's nodes."""
+        """Convert coordinates and rates of the bore's nodes to those of the bore in the film model."""
         return q, q_t
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
@@ -261,7 +261,7 @@ class FilmElement:
         return trial is None or not (trial.status == Status.NO_PRESSURE or self.failures.crushes(trial))
 
     def require_film(self, time: float) -> None:
-        """Raise if the run has ended behind the end of a pressure law, or with a film that no bearing has."""
+        """Raise if the run has ended beyond the end of a pressure law, or with a film that no bearing can have."""
         trial = self.last
         if trial is not None and trial.status == Status.NO_PRESSURE:
             raise self.failures.no_film(time, trial, explicit=False)
@@ -280,22 +280,22 @@ class FilmElement:
         q, q_t = self.read(mbs, configuration)
         trial = self._try(mbs, q, q_t, configuration, time)
         if configuration != CURRENT and any(isinstance(side, MarkerSide) for side in self.sides):
-            # the markers' Jacobians were not brought to this state: never reuse it
+            # the markers' Jacobians were not updated to this state: the trial must not be reused
             self.forget()
         return trial
 
     def motion(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> np.ndarray:
-        """Motion at the state that Exudyn holds in ``configuration``, without asking the film."""
+        """Motion at Exudyn's state in ``configuration``, without evaluating the film."""
         q, q_t = self.read(mbs, configuration)
         motion = self._move(mbs, q, q_t, configuration)
         self.forget()
         if configuration == CURRENT:
-            # the film will be asked there next
+            # stored, because the film is evaluated at this state next
             self._peeked = q, q_t, motion
         return motion
 
     def forget(self) -> None:
-        """Evaluate the film anew at the next state, whichever it is."""
+        """Drop the last evaluation, so that the film is evaluated again at the next state."""
         self.last = self._peeked = None
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
@@ -310,12 +310,12 @@ class FilmElement:
         return make_row(time, motion, ratios, trial.evaluation.wrench, quantities, tangent, load)
 
     def recorded(self, motion: np.ndarray) -> tuple[np.ndarray, tuple[float, float]]:
-        """Return the motion (10,) as the record has it, and the eccentricity ratios in the mid-plane and at an end."""
+        """Return the motion (10,) for the record, and the eccentricity ratios in the mid-plane and at an end."""
         bearing = self.model.bearing
         return motion[:10], eccentricity_ratios(motion, bearing.radial_clearance, bearing.length)
 
     def fields(self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: _Configuration) -> FilmFields:
-        """Fields of the film at the last trial, that of the state in ``configuration``."""
+        """Fields of the film at the last trial, which must be that of the state in ``configuration``."""
         if not isinstance(trial.evaluation, Evaluation):
             raise InputError(f"'{self.failures.name}' has no film around a journal; see thrust_... in its history.")
         return trial.evaluation.fields(time, self.bush_displacement(trial, configuration))
@@ -325,7 +325,7 @@ class FilmElement:
         return None
 
     def _quantities(self, evaluation: JointEvaluation) -> Mapping[str, float]:
-        """Scalars of an evaluation, to which the sides' arrays belong."""
+        """Scalars of an evaluation; the sides' arrays must belong to it."""
         return evaluation.quantities()
 
     def current(self, mbs: exu.MainSystem) -> tuple[float, Trial]:

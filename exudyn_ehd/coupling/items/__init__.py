@@ -2,12 +2,12 @@
 
 Module map
 ----------
-bodies          what becomes of an item number; nodes and bodies
+bodies          resolution of item numbers; nodes and bodies
 markers         rigid markers; the best rigid fit of nodes of finite elements; item numbers of any kind
-joint_frame     where the joint is, and what is held of its axial freedom
+joint_frame     position and frame of the joint; constraint of the option `Held`
 beams           beams and cables
 reduced_bodies  reduced finite-element bodies; what carries a bush
 bush            a nodal bush as an object of a model
-bush_equations  its equations of motion
-objects         whose user functions an object has, its mass; equations of reduced bodies with an exact Jacobian
+bush_equations  equations of motion of a nodal bush
+objects         owner of an object's user functions, its mass; equations of reduced bodies with an exact Jacobian
 """

@@ -1,4 +1,4 @@
-"""Beams and cables as items of a joint: where along the element the joint point lies, and which side carries it."""
+"""Beams and cables as items of a joint: position of the joint point along the element, and the side for it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ SLOPE_NODES = ("Point2DSlope1", "PointSlope1")
 """Node types that hold a position and a slope."""
 CABLES = ("ANCFCable2D", "ANCFCable")
 EXACT_BEAMS = ("BeamGeometricallyExact2D", "BeamGeometricallyExact3D", "BeamGeometricallyExact")
-# Angle, degrees, up to which the joint axis counts as along a cable, and within which of a right angle as across it.
+# Angle, degrees, between the joint axis and a cable up to which the joint is along the cable; the same tolerance about
+# 90 degrees for a joint across it. Other angles raise an error.
 ALIGNED = 8.0
 
 
@@ -41,7 +42,7 @@ def element_nodes(data: Data) -> tuple[Index, ...]:
 
 
 def frame_along(tangent: np.ndarray, planar: bool) -> np.ndarray:
-    """Reference frame (3, 3) of a cable, which has no orientation: x along it, z as close to the global z as can be."""
+    """Reference frame (3, 3) of a cable, which has no orientation: x along it, z as close as possible to global z."""
     t = tangent / np.linalg.norm(tangent)
     across = np.array([0.0, 0.0, 1.0]) if planar or abs(t[2]) < 0.9 else np.array([0.0, 1.0, 0.0])
     return slope_rotation(t, across)[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
@@ -60,9 +61,9 @@ def cable_maps(dimension: int, length: float | None, x: float) -> tuple[np.ndarr
     dimension : int
         2 or 3.
     length : float or None
-        Of the element; None for a node.
+        Length of the element; None for a node.
     x : float
-        Place along the element [m], from its first node.
+        Position along the element [m], from its first node.
     """
     rows = np.eye(2)
     if length is not None:
@@ -181,7 +182,7 @@ def marker_on_node(
     point: np.ndarray,
     rotation: np.ndarray,
 ) -> MarkerSide:
-    """Side through a marker of our own on a node that has an orientation, at the node."""
+    """Side through a new marker on a node that has an orientation, at the node."""
     if np.linalg.norm(point - place) > 1e-9 * max(1.0, float(np.linalg.norm(place))):
         raise InputError(
             f"CreateLubricatedJoint.position must be that of the node of {where}, {place.tolist()}, got "

@@ -1,6 +1,6 @@
 """Nodes and bodies of a scene, rigid and flexible, as items of a joint.
 
-Each entry of itemNumbers is resolved to where it is, how it moves, and which side it makes.
+Each entry of itemNumbers is resolved to its position, its kinematics, and the side that it becomes.
 """
 
 from __future__ import annotations
@@ -30,27 +30,27 @@ class Item:
     Attributes
     ----------
     position, rotation : ndarray (3,), (3, 3)
-        Its frame in the reference configuration, global: the body's, the node's or the marker's; of a beam element that
-        of its local coordinates, x along it.
+        Frame of the body, node or marker in the reference configuration, global; for a beam element that of its local
+        coordinates, x along it.
     is_marker : bool
-        Whether it fixes the joint point itself.
+        True if it sets the joint point.
     kind : int or None
-        How its node turns, None for anything but a rigid body, a rigid node or ground.
+        Kind of rotation coordinates of its node; None unless it is a rigid body, a rigid node or ground.
     planar : bool
-        Whether it moves in the global x-y plane only.
+        True if it moves in the global x-y plane only.
     inner : bool
-        Whether it moves against other points of its own body by coordinates of the body's one node (link of a tree,
-        point of a mesh).
+        True if it moves relative to other points of the same body by coordinates of the body's only node (link of a
+        tree, point of a mesh).
     marker : exudyn.MarkerIndex or None
-        The rigid marker that was given.
+        The given rigid marker.
     nodes : tuple
-        Nodes it depends on; the one of a rigid body or a rigid node.
+        Nodes on which it depends; a rigid body or a rigid node has one.
     node_position, node_rotation : ndarray (3,), (3, 3)
         Frame of its node (or of global space for ground) in the reference configuration.
     body : exudyn.ObjectIndex or None
         The reduced finite-element body; None for any other item.
     side : function of point (3,) and joint rotation (3, 3)
-        Makes the carrier of the frame that is there in the reference state, global.
+        Function that returns the side whose frame has this point and rotation in the reference state, global.
     """
 
     position: np.ndarray
@@ -68,7 +68,7 @@ class Item:
 
 
 def ground_item(position: np.ndarray, rotation: np.ndarray) -> Item:
-    """Item of ground that has a frame of its own."""
+    """Item of ground with a given frame."""
     return Item(
         position=position,
         rotation=rotation,
@@ -114,7 +114,7 @@ def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
 
 
 def _require_point(mbs: exu.MainSystem, where: str, node: Index) -> None:
-    """Refuse a node without rotation of something that turns, as a mesh's is."""
+    """Raise `InputError` for a node without rotation that belongs to a body that turns, such as a mesh."""
     owners = _owners(mbs, node)
     if owners and not any(data["objectType"] in MASS_POINTS for _, data in owners):
         number, data = owners[0]
@@ -168,7 +168,7 @@ def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
 
 
 def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tuple[Index, ...]) -> Item:
-    """Reduced finite-element body, which can hold a film in its bore and nothing else without a marker."""
+    """Reduced finite-element body, which without a marker supports a film on its bore or journal only."""
     rigid = node_item(mbs, where, nodes[0])
 
     def refuse(point: np.ndarray, rotation: np.ndarray) -> Side:

@@ -1,9 +1,9 @@
-"""The nodal bush as an object of an Exudyn model.
+"""Nodal bush as an object of an Exudyn model.
 
-One ``ObjectGenericODE2`` over ``NodePoint`` nodes: constant sparse mass, force and Jacobian of the total Lagrangian
-solid. Nodes whose three directions are supported become ``NodePointGround`` and leave the equations. A direction
-supported alone stays a coordinate but is cut off from the mesh and held by a spring 1e9 times stiffer than the mesh, so
-that the mesh sees an exact support and a force of another item on that coordinate is carried to ground.
+One ``ObjectGenericODE2`` over ``NodePoint`` nodes has a constant sparse mass, and force and Jacobian of the total
+Lagrangian solid. Nodes that are supported in three directions become ``NodePointGround`` without equations. A single
+supported direction remains a coordinate, but is decoupled from the mesh and held by a spring 1e9 times stiffer than the
+mesh. So the support of the mesh is exact, and forces of other items on this coordinate go to ground.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from exudyn_ehd.status import InputError, require_type, require_vector
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Support:
-    """Nodes of a bush that can't move in some global directions.
+    """Support of a bush: nodes that cannot move in some global directions.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Support:
 
 @dataclass(frozen=True, kw_only=True)
 class FreeOuter:
-    """``outer`` of a bush: its outer surface is free.
+    """Option ``outer`` of a bush: its outer surface is free.
 
     If such a bush spins, take 40 or more steps a turn and a spectral radius of 0.6. Its nodes have absolute
     coordinates, on which Exudyn's integrator loses angular momentum with the square of the angle per step. A ring of
@@ -75,7 +75,7 @@ class FreeOuter:
 
 @dataclass(frozen=True, kw_only=True)
 class FixedOuter:
-    """``outer`` of a bush: its outer surface is fixed in space.
+    """Option ``outer`` of a bush: its outer surface is fixed in space.
 
     Examples
     --------
@@ -85,7 +85,7 @@ class FixedOuter:
 
 @dataclass(frozen=True, kw_only=True)
 class CarriedOuter:
-    """``outer`` of a bush: its outer surface moves with the rigid frame of a body, without constraint equations.
+    """Option ``outer`` of a bush: its outer surface moves with the rigid frame of a body, without constraint equations.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ class FlexibleBush:
         return StressRecovery(mesh=self.solid.mesh, material=self.solid.material)
 
     def energy(self, configuration: exu.ConfigurationType = CURRENT) -> tuple[float, float]:
-        """Return strain and kinetic energy [J]; kinetic energy that counts as the housing's is left out."""
+        """Return strain and kinetic energy [J], without kinetic energy that counts as the housing's."""
         u, v = self._motion(configuration)
         kinetic = 0.5 * float(np.einsum("ni,ni->", v, self.solid.scalar_mass @ v))
         return self.solid.energy(u), kinetic - self._contained()[0]
@@ -175,14 +175,14 @@ class FlexibleBush:
     def momentum(self, configuration: exu.ConfigurationType = CURRENT) -> tuple[np.ndarray, np.ndarray]:
         """Return linear momentum [kg m/s] and angular momentum about the global origin [kg m^2/s].
 
-        Without the part that counts as the housing's, where the housing's mass contains the bush.
+        If the housing's mass contains the bush, the part that counts as the housing's is omitted.
         """
         u, v = self._motion(configuration)
         flow, (_, linear, angular) = self.solid.scalar_mass @ v, self._contained()
         return flow.sum(axis=0) - linear, np.cross(self.solid.mesh.nodes + u, flow).sum(axis=0) - angular
 
     def _contained(self) -> tuple[float, np.ndarray, np.ndarray]:
-        """Kinetic energy and momenta of the bush that the carrier has, at the state that `_motion` was asked for."""
+        """Kinetic energy and momenta of the bush that count as the carrier's, at the state of the last `_motion`."""
         equations = self.equations
         if equations.contained is None or equations.carrier is None:
             return 0.0, np.zeros(3), np.zeros(3)
@@ -300,7 +300,7 @@ class Mount:
     Parameters
     ----------
     side : Side
-        Its axes are the bush's.
+        Side whose axes are those of the bush.
     initial : ndarray (3, 6)
         The side's frame in the initial configuration.
     point : ndarray (3,)
@@ -329,7 +329,7 @@ def add_bush(
     show: bool = True,
     color: Sequence[float] = (0.6, 0.6, 0.7, 1.0),
 ) -> FlexibleBush:
-    """Add a bush on a mount; what `CreateFlexibleBush` does after its checks of arguments.
+    """Add a bush on a mount; `CreateFlexibleBush` calls this after its checks of arguments.
 
     Parameters
     ----------
@@ -446,7 +446,7 @@ def _add_object(
 
 
 def _triangles(mesh: BushMesh, numbers: np.ndarray) -> np.ndarray:
-    """Triangles of the boundary in the object's own node numbers, shape (m, 3)."""
+    """Triangles of the boundary, by the object's node numbers, shape (m, 3)."""
     own = np.cumsum(numbers >= 0) - 1
     faces = mesh.boundary[(numbers[mesh.boundary] >= 0).all(axis=1)]
     return own[faces[:, face_of(faces).triangles].reshape(-1, 3)]

@@ -2,7 +2,7 @@
 
 Mesh nodes are moving (three coordinates each), grounded (none), or slaved to a carrier with coordinates q_c.
 With u = T(q) the reduced equations are T^T (M u_tt + f_int - f_load) = 0, and u_tt = T q_tt + (velocity accelerations).
-A bush that the carrier's own mass contains is taken off it again as a rigid body (`RigidPart`).
+If the carrier's mass contains the bush, the bush is subtracted from it as a rigid body (`RigidPart`).
 
 Inertia of a bush as a rigid part, which the mass of its carrier already contains
 ---------------------------------------------------------------------------------
@@ -12,7 +12,7 @@ velocity v, angular velocity omega), the carrier's kinetic energy contains
     m v^2 / 2 + v . (omega x s) + omega . I omega / 2.
 
 The equations of the mesh subtract it. Mass, momentum and weight of the model are then those of the carrier, for any
-material of the bush. Of the mesh's inertia only that of its strain remains.
+material of the bush. The remaining inertia of the mesh is that of its deformation.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ class BushEquations:
     ) -> None:
         self.name, self.solid, self.held, self.slaved, self.carrier = name, solid, held, slaved, carrier
         self.loads, self.mass_rate, self.contained = loads, mass_rate, contained
-        # start of the step at which elements were looked at last
+        # start of the last step at which elements were checked
         self._watched, self._weighed = math.nan, False
         moving = ~slaved & ~held.all(axis=1)
         self._moving_rows, self._slaved_rows = (np.flatnonzero(np.repeat(nodes, 3)) for nodes in (moving, slaved))
@@ -146,7 +146,7 @@ class BushEquations:
         return u, v
 
     def _nodal(self, q: np.ndarray) -> np.ndarray:
-        """Values of the mesh's own nodes as an array of all nodes, shape (n, 3)."""
+        """Expand values of the nodes with coordinates to an array of all nodes, shape (n, 3)."""
         values = np.zeros(self.held.size)
         values[self._moving_rows] = q[: self.count]
         return values.reshape(-1, 3)
@@ -189,10 +189,10 @@ class BushEquations:
     ) -> csr_matrix:
         """Return -(position_factor d(force)/dq + velocity_factor d(force)/dq_t).
 
-        Exact without carrier and without viscosity; mass-proportional damping is exact too. Left out: a viscosity's
-        change with the strain rate (see `TotalLagrange.tangent`), and with a carrier the change of the slaved
-        velocities and inertia forces with its attitude, of the size of its angular velocity. Newton's method then
-        takes more iterations; its result is the same.
+        It is exact without carrier and without viscosity, also with mass-proportional damping. Two terms are omitted:
+        the change of a viscosity with the strain rate (see `TotalLagrange.tangent`), and with a carrier the change of
+        the slaved velocities and inertia forces with its attitude, of the size of its angular velocity. Newton's method
+        then needs more iterations; its result is the same.
         """
         q, q_t = np.array(coordinates), np.array(rates)
         u, v = self.motion(q, q_t)
@@ -238,7 +238,7 @@ class BushEquations:
         return self.mass(np.array(q))
 
     def rounding(self, reach: np.ndarray) -> float:
-        """Return the norm of the forces' round-off [N], at most, for coordinates up to a size (n,).
+        """Return an upper bound of the norm of the forces' round-off [N], for coordinates up to a size (n,).
 
         Nodes on a carrier have the round-off of their positions in the model at the last evaluation.
         """
@@ -258,7 +258,7 @@ class BushEquations:
             raise RunError(f"FlexibleBush '{self.name}' at t = {time:.9g} s: {turned}")
 
     def warn_if_light(self, mbs: exu.MainSystem, q: np.ndarray) -> None:
-        """Warn if the carrier must contain the bush and has less mass than it, once the system is assembled."""
+        """Warn if the carrier's mass must contain the bush but is smaller; call it in an assembled system."""
         if self.contained is None or self.carrier is None:
             return
         M, k = self.mass(q).tocsc(), self.count
@@ -279,7 +279,7 @@ class BushEquations:
         return total
 
     def _without_held(self, matrix: csr_matrix, value: float) -> csr_matrix:
-        """Return a matrix of the mesh's own coordinates with ``value`` alone in the rows and columns of held ones."""
+        """Return a matrix with the rows and columns of held coordinates replaced by ``value`` on the diagonal."""
         if not len(self._held):
             return matrix
         held = np.zeros(self.count)
@@ -293,9 +293,9 @@ class BushEquations:
 
     @cached_property
     def _rounding(self) -> tuple[float, float]:
-        """Norms of the forces' round-off [N] per size of coordinates [m], if all nodes have the worst signs.
+        """Norms of the forces' round-off [N] per size of coordinates [m], of all nodes and of carried nodes alone.
 
-        Of all nodes, and of the carried ones alone.
+        They hold for the worst signs at all nodes.
         """
         K = abs(self.solid.tangent(np.zeros(self.held.shape)))
         norms = (np.linalg.norm(part.sum(axis=1)) for part in (K, K[:, self._slaved_rows]))
@@ -310,7 +310,7 @@ class BushEquations:
 
     @cached_property
     def _held_inertia(self) -> float:
-        """Mass [kg] of a coordinate held by a spring, which then swings far above every frequency of the mesh.
+        """Mass [kg] of a coordinate held by a spring, with a frequency far above every frequency of the mesh.
 
         Upper estimate of the frequencies' squares: largest row sum of K over a hundredth of the smallest diagonal of M.
         """

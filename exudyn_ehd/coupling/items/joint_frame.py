@@ -47,7 +47,7 @@ def place_joint(
     use_global: bool,
     names: tuple[str, str] = ("housing", "journal"),
 ) -> tuple[Item, Item, tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """Both items, their joint points (3,) and the joint frame (3, 3), global, checked in the name of ``where``."""
+    """Return both items, their joint points (3,) and the joint frame (3, 3), global, with checks named ``where``."""
     with in_the_name_of(where, *names):
         housing, journal = resolve_pair(mbs, itemNumbers)
         rotation = joint_rotation(housing, axis, matrix, use_global)
@@ -55,7 +55,7 @@ def place_joint(
 
 
 def resolve_pair(mbs: exu.MainSystem, itemNumbers: Sequence[object]) -> tuple[Item, Item]:
-    """Housing and journal of ``itemNumbers``; `InputError` for what can't be one."""
+    """Housing and journal of ``itemNumbers``; `InputError` for unsupported items."""
     where = f"{_WHERE}.itemNumbers"
     if not isinstance(itemNumbers, (list, tuple)) or len(itemNumbers) != 2:
         raise InputError(f"{where} must be [housing, journal], got {itemNumbers!r}.")
@@ -64,8 +64,7 @@ def resolve_pair(mbs: exu.MainSystem, itemNumbers: Sequence[object]) -> tuple[It
     if not housing.nodes and not journal.nodes:
         raise InputError(f"{where}: both items are ground; one of them must move, got {list(itemNumbers)!r}.")
     shared = {int(node) for node in housing.nodes} & {int(node) for node in journal.nodes}
-    # Exudyn adds up what an object hands to a node that it lists twice: two points that move against each other may
-    # share one
+    # two points that move relative to each other may share a node: Exudyn adds both contributions of an object to it
     inner = {int(item.marker) for item in (housing, journal) if item.inner and item.marker is not None}
     if shared and len(inner) < 2:
         raise InputError(
@@ -98,12 +97,12 @@ def joint_rotation(
     if not given:
         raise InputError(f"{_WHERE}.axis is missing; give the direction of the joint axis, e.g. axis=[0, 0, 1].")
     x, y, _ = housing.rotation.T
-    # parallel to rounding only: anything else has a defined projection
+    # only if they are parallel to round-off: otherwise the projection is defined
     return frame_of(z, x if np.linalg.norm(np.cross(z, x)) > 1e-6 else y)
 
 
 def checked_rotation(where: str, matrix: ArrayLike) -> np.ndarray:
-    """The argument ``where`` as an array (3, 3); `InputError` for what isn't a rotation."""
+    """Return the argument ``where`` as an array (3, 3); `InputError` unless it is a rotation."""
     try:
         rotation = np.array(matrix, dtype=float)
     except (TypeError, ValueError, OverflowError):
@@ -132,7 +131,7 @@ def joint_points(
 
 
 def move_to_start(mbs: exu.MainSystem, items: tuple[Item, Item], sides: tuple[Side, Side]) -> bool:
-    """Bring both sides to the initial configuration; False with markers, which tell after Assemble alone."""
+    """Update both sides to the initial configuration; return False for markers, whose state needs Assemble."""
     if any(isinstance(side, MarkerSide) for side in sides):
         return False
     for k, (item, side) in enumerate(zip(items, sides, strict=True)):
@@ -144,9 +143,9 @@ def move_to_start(mbs: exu.MainSystem, items: tuple[Item, Item], sides: tuple[Si
 
 
 def check_start(bearing: JournalBearing, sides: tuple[Side, Side], yields: Callable[[np.ndarray], bool]) -> None:
-    """Refuse an initial state, to which the sides were brought, in which the journal isn't inside the bore.
+    """Raise `InputError` if the journal is not inside the bore in the initial state of the updated sides.
 
-    ``yields`` says whether a bore that is not rigid makes room for a journal at a motion (10,).
+    ``yields``: function of a motion (10,) that tells whether a flexible bore has a film there.
     """
     motion, bore, length = relative.motion_of(*(side.frame for side in sides)), BoreGap(bearing), bearing.length
     gap = bore.smallest(motion)
@@ -179,9 +178,11 @@ def hold(
     axial: bool,
     tilt: bool,
 ) -> Index | None:
-    """Constrain the relative displacement along the joint axis, and the axes' angles to each other, to their values in
-    the reference configuration; None where nothing is to be held."""
-    # planar bodies can't move axially or tilt, nor points turn: the constraint would be empty, and singular
+    """Constrain the relative axial displacement, and the angles between the axes, to their reference values.
+
+    Returns None if neither is to be held.
+    """
+    # planar bodies cannot move axially or tilt, points cannot turn: a constraint would be empty and singular
     moves = not all(item.planar or item.kind == GROUND for item in items)
     axial, tilt = axial and moves, tilt and moves and not all(item.kind in (GROUND, *POINTS) for item in items)
     if not (axial or tilt):
@@ -240,7 +241,7 @@ def rigid_marker(
     transform[:3, :3] = item.node_rotation.T @ rotation
     transform[:3, 3] = item.node_rotation.T @ (point - item.node_position)
     if not item.nodes or item.kind in POINTS:
-        # a ground object of our own at the origin holds the marker; a point turns as little
+        # on a new ground object at the origin, also for a point, which does not turn either
         body = mbs.AddObject(eii.ObjectGround(name=name, visualization=eii.VObjectGround(show=False)))
     else:
         body = body_of_node(mbs, item.nodes[0])
@@ -316,7 +317,7 @@ def hold_at_pivot(
 
 @contextmanager
 def in_the_name_of(where: str, housing: str, journal: str) -> Iterator[None]:
-    """Let the checks that a call shares with `CreateLubricatedJoint` speak of that call and of its two items."""
+    """Context in which error messages of `CreateLubricatedJoint` name another call and its two items."""
     try:
         yield
     except InputError as error:

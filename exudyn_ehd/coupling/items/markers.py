@@ -217,7 +217,7 @@ def _transformed(base: Item, place: np.ndarray) -> Item:
 def _marker_side(
     mbs: exu.MainSystem, marker: Index, data: Data
 ) -> tuple[Callable[[np.ndarray], Side], tuple[Index, ...]]:
-    """Function from the rotation of the joint frame in the marker's to the side, and the nodes it depends on."""
+    """Return a function that makes the side from the joint frame's rotation in the marker, and the side's nodes."""
     if "nodeNumber" in data:
         nodes: tuple[Index, ...] = (NodeIndex(int(data["nodeNumber"])),)
     else:
@@ -272,7 +272,7 @@ def mesh_item(mbs: exu.MainSystem, where: str, marker: Index, data: Data, body: 
 
 
 def resolve(mbs: exu.MainSystem, where: str, number: object) -> Item:
-    """Find out what an item number stands for.
+    """Return the item of an item number.
 
     Parameters
     ----------
@@ -286,7 +286,7 @@ def resolve(mbs: exu.MainSystem, where: str, number: object) -> Item:
     Raises
     ------
     InputError
-        If it is no such item, or nothing that can turn.
+        If it is no such item, or if the item cannot turn.
     """
     try:
         if isinstance(number, MarkerIndex):

@@ -1,11 +1,10 @@
-"""Mass matrices of Exudyn's objects, also of those that don't return them; whether a housing contains its bush,
-and whether the items of a joint still exist.
+"""Mass matrices of Exudyn's objects, also of those that do not return them; checks of housings and of deleted items.
 
 Equations of a user's ObjectFFRFreducedOrder, with an exact Jacobian
 --------------------------------------------------------------------
-Exudyn differentiates that object by differences, by each of its coordinates and rates. Without its own terms
-(``computeFFRFterms=False``) it has neither forces nor mass, and its differences cost next to nothing, while its
-markers, sensors, loads and drawing go on. An ObjectGenericODE2 on the same two nodes has the equations instead
+Exudyn differentiates that object numerically by each of its coordinates and rates. With ``computeFFRFterms=False`` it
+has neither forces nor mass, so that the differentiation costs next to nothing; markers, sensors, loads and drawing
+still work. An ObjectGenericODE2 on the same two nodes has the equations instead
 (`exudyn_ehd.coupling.kinematics.flexible_bodies`).
 """
 
@@ -30,7 +29,7 @@ _OR_GRAVITY = "give the joint bushGravity=(...): the bush's mass then counts bes
 
 
 def own_equations(mbs: exu.MainSystem, body: Index) -> Index:
-    """Move the equations of a body to an object of their own, before Assemble; returns that object."""
+    """Move the equations of a body to a separate object, before Assemble; return that object."""
     equations = ReducedBody(mbs, body)
     mbs.SetObjectParameter(body, "computeFFRFterms", False)
     return mbs.AddObject(
@@ -76,7 +75,7 @@ class ReducedBody:
         return self._bound(mbs).derivative(np.array(q), np.array(q_t), f_q, f_qt)
 
     def _bound(self, mbs: exu.MainSystem) -> FloatingBody:
-        """The body with its matrices, read once in a run whose solver is stored, and in every call else."""
+        """Return the body with its matrices: read once per run if the solver is stored, else in every call."""
         stored = mbs.sys
         solvers = stored.get("dynamicSolver"), stored.get("staticSolver")
         at_work = any(solver is not None and not solver.output.finishedSuccessfully for solver in solvers)
@@ -161,7 +160,7 @@ def hidden_mass(mbs: exu.MainSystem, item: Index, size: int) -> np.ndarray:
 
 
 def as_sparse(value) -> csr_matrix | None:
-    """A matrix that a user function or an object holds."""
+    """Return a matrix of a user function or an object in sparse form; None if there is none."""
     if isinstance(value, exu.MatrixContainer):
         value = value.GetPythonObject()
     if isinstance(value, dict):
@@ -189,16 +188,16 @@ def require_heavy_housing(mbs: exu.MainSystem, housing: Item, bush: float, name:
 
 
 def warn_if_indefinite(mbs: exu.MainSystem, nodes: Sequence[Index], change: np.ndarray, bush: float, name: str) -> None:
-    """Warn if what carries the bush has not its mass: the mass matrix is then indefinite.
+    """Warn if the housing has less mass than the bush that it must contain: the mass matrix is then indefinite.
 
-    To be called once the system is assembled. No error: constraints may hold what is too light.
+    Call it in an assembled system. It is no error, because constraints may hold a housing that is too light.
 
     Parameters
     ----------
     nodes : sequence
         Nodes of the housing's side, with n coordinates.
     change : (n, n) array
-        What the bush adds to their mass when its own coordinates move as they like (the Schur complement).
+        Contribution of the bush to their mass with free bush coordinates (the Schur complement).
     bush, name
         As in `require_heavy_housing`.
     """
@@ -227,8 +226,8 @@ def warn_if_indefinite(mbs: exu.MainSystem, nodes: Sequence[Index], change: np.n
 class Presence:
     """Items of one joint as they were when it was created.
 
-    Exudyn's DeleteObject, DeleteNode and DeleteMarker renumber what is left, and its Reset leaves nothing; a joint that
-    went on with its numbers would hold other bodies.
+    Exudyn's DeleteObject, DeleteNode and DeleteMarker renumber the remaining items, and Reset deletes all. With its old
+    numbers a joint would act on other bodies.
 
     Parameters
     ----------
@@ -276,7 +275,7 @@ class Presence:
 
 
 def force_owner(mbs: exu.MainSystem, number: int, name: str = "forceUserFunction") -> object:
-    """Return the object whose method is the force function of an Exudyn object, or another; None without such one."""
+    """Return the Python object whose method is a user function, by default the force, of an Exudyn object; or None."""
     item = ObjectIndex(number)
     # only some objects have a force function
     if mbs.GetObject(item)["objectType"] != "GenericODE2":

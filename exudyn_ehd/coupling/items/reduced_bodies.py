@@ -1,8 +1,8 @@
-"""The bore or journal of a user's ObjectFFRFreducedOrder: its data as Exudyn holds them, and the frame that follows it.
+"""Bore or journal of a user's ObjectFFRFreducedOrder: its data in Exudyn, and the frame that moves with the surface.
 
-The body's modal node serves twice in the film's object: in the body's side, for the rigid motion of the surface that
-the modes cause, and as the surface's coordinates, for the rest. Exudyn adds up what an object hands to a node that it
-lists twice, forces and Jacobians alike.
+The film's object lists the body's modal node twice: in the body's side, for the rigid motion of the surface by the
+modes, and as the surface's coordinates, for the rest. Exudyn adds both contributions of an object to such a node,
+forces and Jacobians.
 
 Carrier of a bush's slaved nodes: points that move with the rigid frame of a side of a joint
 --------------------------------------------------------------------------------------------
@@ -12,8 +12,8 @@ point X of the bush's frame has the arm s = A X and
     x = p + s,   dx/dt = v + omega x s,   B = dx/dq = Jp - [s]x Jr,
     d2x/dt2 = B q_tt + Vq q_t + (Wq q_t) x s + omega x (omega x s),
 
-where Vq, Wq are the derivatives of v and omega to q. Sides that know no derivatives of their Jacobians (`MarkerSide`)
-count them as zero.
+where Vq, Wq are the derivatives of v and omega to q. They are zero for sides without derivatives of their Jacobians
+(`MarkerSide`).
 """
 
 from __future__ import annotations
@@ -45,13 +45,13 @@ def hold_fe_surfaces(
     points: tuple[np.ndarray, np.ndarray],
     rotation: np.ndarray,
 ) -> tuple[JournalBearing, tuple[Item, Item]]:
-    """Bearing with the bore and the journal of the reduced bodies under it, and both items, which move with them.
+    """Return the bearing with the surfaces of the reduced bodies, and both items with frames that move with them.
 
     Parameters
     ----------
     mbs : exudyn.MainSystem
     bearing : JournalBearing
-        With an `FEBore` as bush for an ObjectFFRFreducedOrder as housing, an `FEJournal` for one as journal.
+        Bearing with an `FEBore` as bush for an ObjectFFRFreducedOrder as housing, an `FEJournal` for one as journal.
     items : pair of Item
         Housing and journal.
     points, rotation : pair of ndarray (3,), ndarray (3, 3)
@@ -60,7 +60,7 @@ def hold_fe_surfaces(
     Raises
     ------
     InputError
-        If a body has no such surface, or the bearing none for it.
+        If a body has no such surface, or if the bearing has no `FEBore` or `FEJournal` for it.
     """
     held = list(items)
     for k, (option, kind, name) in enumerate((("bush", FEBore, "bore"), ("journal", FEJournal, "journal"))):
@@ -204,20 +204,20 @@ class Carrier:
     ----------
     mbs : exudyn.MainSystem
     side : Side
-        Carries the bush's frame; the carrier keeps a copy with arrays of its own.
+        Side with the bush's frame; the carrier uses a copy with separate work arrays.
     local : ndarray (s, 3)
         X [m].
     """
 
     def __init__(self, mbs: exu.MainSystem, side: Side, local: np.ndarray) -> None:
-        # held by the system's own functions: what they refer to must not keep it alive
+        # weak reference: the system's user functions refer to the carrier, which must not keep the system alive
         self.mbs: exu.MainSystem = weakref.proxy(mbs)
         self.side: Side = copy.deepcopy(side)
         self.local = local
         self._bound = False
 
     def move(self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = CURRENT) -> None:
-        """Bring frame and Jacobians to the coordinates ``q`` and rates ``q_t`` (n,) of a ``configuration``."""
+        """Update frame and Jacobians to the coordinates ``q`` and rates ``q_t`` (n,) of a ``configuration``."""
         if not self._bound:
             bind(self.mbs, self.side)
             self._bound = True
@@ -239,7 +239,7 @@ class Carrier:
     def force_derivative(self, q: np.ndarray, forces: np.ndarray) -> np.ndarray:
         """Return d(B^T f)/dq (n, n) at constant global forces f, shape (s, 3) [N].
 
-        That of resultants F = sum f and M = sum s x f at the frame, and dM = sum (dphi x s) x f.
+        It is the derivative for the resultants F = sum f and M = sum s x f at the frame, plus dM = sum (dphi x s) x f.
         """
         arms, turn = self._arms(), self.side.jac[1]
         load = np.concatenate((forces, np.cross(arms, forces)), axis=1).sum(axis=0)

@@ -13,15 +13,15 @@ t^T) / |s|.
 
 Equations of motion of a body in a floating frame with modes
 ------------------------------------------------------------
-A point X of the body stands at ``r + A (X + Psi z)``, with r, A and the local angular velocity ``w = G q_t`` of a rigid
-node and modes z. In the frame's components, with alpha the angular acceleration at zero second derivatives of the
-coordinates, the left-hand side beside ``M q_tt`` is
+A point X of the body has the position ``r + A (X + Psi z)``, with r, A and the local angular velocity ``w = G q_t`` of
+a rigid node and modes z. In the frame's components, with alpha the angular acceleration at zero second derivatives of
+the coordinates, the left-hand side without ``M q_tt`` is
 
     on r:    f   = alpha x s + w x (w x s) + 2 w x S z_t,
     on A:    m   = J alpha + w x J w + 2 sum z_t,i R_i^T w,
     on z_i:  g_i = (K z + D z_t)_i - w . R_i w - 2 w . (C z_t)_i - alpha . (T + C z)_i,
 
-and the mass matrix has the blocks ``m 1, -A s~ G, A S, G^T J G, -G^T (T + C z), M``. It takes the integrals
+and the mass matrix has the blocks ``m 1, -A s~ G, A S, G^T J G, -G^T (T + C z), M``. The integrals are
 
     s = m c + S z,   R_i = X_i^T + sum P_ij z_j,   J = J_0 + sum z_i (X_i + R_i),   (C z)_i = sum z_j C_ji,
     S = int Psi dm,   X_i = int x~^T Psi_i~ dm,   P_ij = int Psi_i~^T Psi_j~ dm,
@@ -199,7 +199,7 @@ class BeamSide(Side):
 class SlopeSide(Side):
     """Frame on a cable, whose nodes hold positions and slopes; see the module's text.
 
-    The roll about the cable is no coordinate: a moment about the cable's axis finds no resistance and no motion there.
+    The roll about the cable is no coordinate: a moment about the cable's axis has no effect.
 
     Parameters
     ----------
@@ -343,7 +343,7 @@ class FloatingBody:
         return out
 
     def left_hand_side(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
-        """Forces (n + k,) beside ``M q_tt``, on the left-hand side."""
+        """Left-hand side (n + k,) without ``M q_tt``."""
         self._spin(q, q_t)
         rigid, w = self.G.T @ self.m, self.w
         rigid[:3] = self.A @ self.f
@@ -357,7 +357,7 @@ class FloatingBody:
         change, out = self.frame.change(None, q[:n])[3:], np.empty((self.size, self.size))
         dw = f_q * (self.A.T @ (q_t[:n] @ change) + W @ G) + f_qt * G
         da, growing = self._alpha_changes(q_t, f_q, f_qt), self.R + self.R.transpose(0, 2, 1)
-        # f and m turn with the frame
+        # derivatives by the rotation of the frame, in whose components f and m are given
         df = f_q * skew(-self.f) @ G - skew(self.s) @ da - (skew(self.turning) + W @ skew(self.s)) @ dw
         dm = f_q * skew(-self.m) @ G + self.J @ da + (2.0 * self.growth - skew(self.J @ w) + W @ self.J) @ dw
         out[:n, :n] = G.T @ dm + f_q * (self.A @ self.m @ change.reshape(3, -1)).reshape(n, n)

@@ -5,7 +5,8 @@ joint frame that of the housing.
 
 Place of a journal along its bearing's axis: the eleventh entry of its motion, for films on end faces
 -----------------------------------------------------------------------------------------------------
-It is that of the journal's centre, the point of its axis at the housing's joint point in the reference configuration,
+It is the position of the journal's centre, the point of its axis at the housing's joint point in the reference
+configuration,
 
     z = e_z . (p_J - z_0 a - p_H),
 
@@ -334,7 +335,7 @@ class BoreGap:
             ones = np.ones(ALONG)
             c, s = np.cos(theta)[:, None], np.sin(theta)[:, None]
             self.normals = np.stack((c * ones, s * ones, c * z, s * z), axis=-1)
-        # what is no cylinder knows its own
+        # bearings that are no cylinders provide their own directions
         own = getattr(bearing, "gap_normals", None)
         if own is not None:
             self.normals = own()

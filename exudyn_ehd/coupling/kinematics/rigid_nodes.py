@@ -18,8 +18,8 @@ Lie group nodes: q_t holds the local angular velocity, and dq the local incremen
 Euler parameters: the node's rotation is that of e / |e|, so that an iterate off the unit sphere is a pure rotation;
 on the sphere, where Exudyn's constraint holds it, all quantities equal Exudyn's.
 
-Vectors of three are tuples, and arrays are written in loops: slices and expressions of arrays take numba many times as
-long to compile, seconds for the message of an assignment to a slice that does not fit.
+Vectors of three are tuples, and arrays are written in loops, because numba needs many times as long to compile slices
+and array expressions.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The two sides of a joint: who carries the marker frame, and how its state is read.
+"""Sides of a joint: the item that moves a marker frame, and how the frame's state is computed.
 
 A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid bodies and ground through kernels,
 `flexible_bodies` for geometrically exact beams and cables, `MarkerSide` for any other rigid marker through Exudyn's own
@@ -78,9 +78,9 @@ def node_side(mbs: exu.MainSystem, node: Index) -> NodeSide:
 class MarkerSide(Side):
     """Marker frame of any rigid marker, through Exudyn's marker Jacobians.
 
-    The change of the Jacobians with the coordinates, which velocities and the geometric stiffness need, comes from
-    Exudyn too where the marker offers it (ANCF beams and cables, rigid bodies); the subclasses know it for bodies whose
-    markers don't. For any other body it counts as zero: Newton's rate suffers a little, the solution does not.
+    Derivatives of the Jacobians to the coordinates are needed for velocities and the geometric stiffness. They come
+    from Exudyn if the marker offers them (ANCF beams and cables, rigid bodies). Subclasses compute them for some other
+    bodies. Otherwise they are zero: Newton's method then converges a little slower, to the same solution.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ class MarkerSide(Side):
     def change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
         """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state.
 
-        (6, 0, 0) where Exudyn offers none.
+        (6, 0, 0) if Exudyn offers none.
         """
         item, n = exu.ComputeItemType.JacobianTTimesVectorDerivative, self.size
         change = np.zeros((6, n, n) if self._offers_change else (6, 0, 0))
@@ -156,7 +156,7 @@ class FloatingSide(MarkerSide):
     """Superelement marker on a body with a floating frame: a rigid node, then local flexible coordinates.
 
     The columns of the flexible coordinates turn with the frame, ``d/dtheta = Jr_theta x``, and the frame's lever arm to
-    the marker grows with them; their own change with deformation is of the order of the deformation and left out.
+    the marker changes with them. Their change with the deformation, of the size of the deformation, is omitted.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def floating_change(floating: NodeSide, q: np.ndarray, arm: np.ndarray, jac: np.
 
 
 def bind(mbs: exu.MainSystem, *sides: Side) -> None:
-    """Let sides that ask Exudyn's markers find their number of coordinates, once the system is assembled."""
+    """Let sides with Exudyn's markers find their number of coordinates, in an assembled system."""
     for side in sides:
         if isinstance(side, MarkerSide):
             side.bind(mbs)
@@ -218,7 +218,7 @@ def motion_between(
     configuration: exu.ConfigurationType,
     kinematics: Kinematics = JOURNAL,
 ) -> np.ndarray:
-    """Bring two sides to q and q_t (n,), housing's first; return the motion."""
+    """Update two sides to q and q_t (n,), housing's first; return the motion."""
     housing, journal = sides
     n = housing.size
     housing.update(mbs, q[:n], q_t[:n], configuration)
@@ -234,14 +234,14 @@ def derivatives_between(
     tangent: np.ndarray,
     kinematics: Kinematics = JOURNAL,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Derivatives of what a wrench between housing and journal makes of a state (q, q_t), to which both are brought.
+    """Derivatives of the generalized forces Q of a wrench between two sides, at the state to which they are updated.
 
     Parameters
     ----------
     wrench : (6,) array
-        On the journal, joint frame.
+        Wrench on the journal, joint frame.
     tangent : (6, m) array
-        Its derivatives to the motion.
+        Derivatives of the wrench to the motion.
     kinematics : Kinematics
 
     Returns

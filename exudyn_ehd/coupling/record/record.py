@@ -1,5 +1,7 @@
-"""The rows of a joint's accepted steps: all of them in memory, or some of them, or the last ones with a file;
-and back from files. Films of them, kept while a run goes on; the memory they take is bounded."""
+"""Record of a joint's accepted steps: rows in memory, all or some, or in a file; films, in a bounded amount of memory.
+
+Histories are read back from files.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,8 @@ from exudyn_ehd.joint.model.results import FilmFields
 from exudyn_ehd.status import ROUNDING, InputError, RunError, require_integer, require_number
 from exudyn_ehd.storage import read_arrays, require_path
 
-# Rows in memory from which on they are settled: numbered, and thinned or written to a file.
+# Number of rows in memory from which on they are settled: numbered, and thinned or written to a file. Larger: more
+# memory, fewer writes.
 MOST_ROWS = 256
 
 
@@ -53,9 +56,9 @@ class Record:
     Attributes
     ----------
     end : (k,) array or None
-        Row of the last state, which no further step has brought.
+        Row of the last state, which is not the start of a further step.
     thinnest : float
-        Minimum film thickness of all rows, m; infinite where no film has one.
+        Minimum film thickness of all rows, m; infinite if no film has one.
     """
 
     def __init__(self, bearing: JournalBearing) -> None:
@@ -69,11 +72,11 @@ class Record:
         self.end: np.ndarray | None = None
 
     def thin(self, rule: Every | Period) -> None:
-        """Drop rows by a rule from now on."""
+        """Drop rows by a rule, from the next row on."""
         self._thinner = Thinner(rule, self._bearing)
 
     def keep_on_disk(self, path: pathlib.Path, joint: str) -> None:
-        """Let all rows but the last ones go to a file of this joint."""
+        """Write all rows except the last ones to a file of this joint, from the next row on."""
         require_own(path)
         self._disk = RowsOnDisk(path, joint)
 
@@ -103,7 +106,7 @@ class Record:
             self._disk = RowsOnDisk(self._disk.path, self._disk.joint)
 
     def write(self, final: np.ndarray | None = None) -> None:
-        """Settle the rows but the last one of a record that is thinned or in a file, there with ``final`` behind them.
+        """Settle all rows except the last one of a record that is thinned or in a file; a file also gets ``final``.
 
         Raises
         ------
@@ -129,19 +132,19 @@ class Record:
         self._kept = []
 
     def _pending(self, final: np.ndarray | None) -> np.ndarray:
-        """Rows (n, WIDTH) of what is not settled, with ``final`` behind them."""
+        """Rows (n, WIDTH) that are not settled, followed by ``final``."""
         return np.array(self._rows if final is None else [*self._rows, final]).reshape(-1, WIDTH)
 
     def rows(self, final: np.ndarray | None) -> np.ndarray:
-        """Copy of all rows (n, WIDTH + 2), with ``final`` behind them if given and later."""
+        """Copy of all rows (n, WIDTH + 2), followed by ``final`` if it is given and later."""
         final = None if final is None or not final[TIME] > self.last_time else final
         earlier = [] if self._disk is None else [self._disk.mapped()]
         return np.concatenate([*earlier, *self._kept, self._thinner.look(self._pending(final))])
 
     def restore(self, rows: np.ndarray) -> None:
-        """Begin with these rows (n, WIDTH + 2), all of them for a record of all steps.
+        """Begin a record with given rows (n, WIDTH + 2), which for a record of all steps must be complete.
 
-        Errors of steps begin anew behind those of a thinned record.
+        After the rows of a thinned record, the estimate of errors starts again.
         """
         if rows.ndim != 2 or rows.shape[1] != WIDTH + 2 or (not self.is_thinned and has_gaps(rows[:, STEP_COUNT])):
             raise InputError(
@@ -161,8 +164,8 @@ class Record:
         return float(self._rows[-1][TIME]) if self._rows else -np.inf
 
     def snapshot(self, final: np.ndarray | None) -> JointHistory:
-        """The record, with ``final`` as its last row if given: a copy, or what reads the file."""
-        # where the file can't be written any more, the rows are still known
+        """Return the record as a history, with ``final`` as its last row if given; it is a copy, or reads the file."""
+        # if the file cannot be written any more, the rows in memory are still used
         if self._disk is not None:
             with contextlib.suppress(RunError):
                 self.write(final)
@@ -178,7 +181,7 @@ class Record:
 
 
 def history_of(parts: Callable[[str], Sequence[np.ndarray]], dimensions: Mapping[str, Any]) -> JointHistory:
-    """A history that makes its columns, of the parts with their rows (n, k), when they are asked for."""
+    """Return a history that computes a column, from parts with rows (n, k), when it is first used."""
 
     def column(name: str) -> np.ndarray:
         values = np.concatenate([part[:, COLUMNS[name]] for part in parts(name)])
@@ -243,8 +246,8 @@ class FilmRecorder:
     period : float
         Time between two films, s; 0 keeps every accepted step.
     frames : int
-        Most films that are kept, at least 2. When they are full, every second one is dropped, and from then on only
-        every second instant is kept: the films always span the whole run evenly.
+        Largest number of films, at least 2. When it is reached, every second film is dropped, and from then on only
+        every second instant is kept. So the films always span the whole run evenly.
     """
 
     def __init__(self, period: float, frames: int) -> None:
@@ -268,7 +271,7 @@ class FilmRecorder:
         if math.isnan(self.first):
             self.first = time
         self.last = time
-        # a step that ends a rounding before the instant is meant to be there
+        # a step that ends before the instant by round-off counts as reaching it
         due = math.floor((time - self.first) / self.period + ROUNDING) if self.period > 0.0 else self.due + 1
         if due == self.due:
             return

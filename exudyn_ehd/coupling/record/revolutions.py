@@ -92,11 +92,11 @@ class Revolutions(Table):
 def revolution_times(time: np.ndarray, omega: np.ndarray) -> np.ndarray:
     """Instants (k + 1,) at which the journal has turned by 0, 1, ... k whole revolutions against the housing.
 
-    One way or the other counts. The angle is the integral of the relative spin, by the trapezoidal rule; linear between
-    steps.
+    Both senses of rotation count. The angle is the integral of the relative spin by the trapezoidal rule, linear
+    between steps.
     """
     angle = np.abs(np.concatenate(([0.0], np.cumsum(0.5 * (omega[1:] + omega[:-1]) * np.diff(time)))) / math.tau)
-    # a journal that swings back counts when it comes by for the first time
+    # for a journal that swings back, the first instant at an angle counts
     reached = np.maximum.accumulate(angle)
     # a run of whole revolutions ends a rounding short of the last one
     whole = int(np.floor(reached[-1] + ROUNDING))

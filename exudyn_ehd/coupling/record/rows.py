@@ -1,18 +1,16 @@
-"""Numbers of recorded steps and their errors, and records that keep some of their steps, none of the worst ones.
+"""Numbers and errors of recorded steps, and records that keep only some of their steps, among them the worst ones.
 
-A row that is settled, behind which others have come, carries two numbers more: which step it is, and the largest error
-of a step since the row before. Errors are summed over all steps before any is dropped
-(`exudyn_ehd.joint.step_error`).
+A settled row, which later rows follow, has two more numbers: the number of its step, and the largest error of a step
+since the previous row. Errors are computed over all steps before any is dropped (`exudyn_ehd.joint.step_error`).
 
-To drop steps they are put into spans. Of each the last one is kept, and those with the thinnest film, the highest
-pressure and the largest load across the axis: every row is an accepted step as it was, and the extremes of the rows
-are those of the run.
+To drop steps, they are divided into spans. In each span these steps are kept: the last one, and those with the thinnest
+film, the highest pressure and the largest load across the axis. So every row is an accepted step, and the extremes of
+the rows are those of the run.
 
 Rows on disk, of records that are too long for memory
 -----------------------------------------------------
-A file begins with a line of JSON that says what it is, padded to `HEAD` bytes; rows of doubles follow, each written
-whole and in order. What is there can be read at any time, also after the program was killed: a row that was cut off
-does not count.
+A file begins with a line of JSON that describes it, padded to `HEAD` bytes. Rows of doubles follow, in order. The file
+can be read at any time, also after the program was killed: an incomplete last row is ignored.
 """
 
 from __future__ import annotations
@@ -52,7 +50,7 @@ from exudyn_ehd.storage import require_path
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Every(Checked):
-    """``record`` of a joint: every n-th accepted step is kept, and the worst ones between them.
+    """Option ``record`` of a joint: every n-th accepted step is kept, and the worst ones between them.
 
     Of each n successive steps the record keeps the last one and those with the smallest ``minimum_gap``, the largest
     ``peak_pressure`` and the largest load across the axis: up to four rows, 1.9 KB. So extremes over the record are
@@ -82,7 +80,7 @@ class Every(Checked):
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Period(Checked):
-    """``record`` of a joint: one step in every period of time is kept, and the worst ones between them; see `Every`.
+    """Option ``record`` of a joint: one step per period of time is kept, and the worst ones between them; see `Every`.
 
     Parameters
     ----------
@@ -104,7 +102,7 @@ class Period(Checked):
 
 
 class Thinner:
-    """Numbers the steps of a record with their errors, a few hundred rows at a time, and drops some by a rule.
+    """Numbering of the steps of a record, with their errors, a few hundred rows at a time, and dropping by a rule.
 
     Parameters
     ----------
@@ -118,15 +116,15 @@ class Thinner:
         self.begin_anew()
 
     def begin_anew(self, last: np.ndarray | None = None) -> None:
-        """Forget all rows; ``last`` (WIDTH + 2,): the first to come is this row once more."""
+        """Forget all rows; ``last`` (WIDTH + 2,): row that comes again as the next one."""
         self.count = 0 if last is None else int(last[STEP_COUNT])
         self._known_error = np.nan if last is None else float(last[STEP_ERROR])
-        # what is kept so far of the span under way; the last rows as they came, and the pose's error there
+        # rows kept so far of the present span; the last rows, and the error of the pose there
         self._open, self._lead = np.empty((0, WIDTH + 2)), np.empty((0, WIDTH))
         self._error: Sequence[np.ndarray] = no_error(BALL if isinstance(self._bearing, SphericalBearing) else JOURNAL)
 
     def take(self, rows: np.ndarray) -> np.ndarray:
-        """Add rows (n, WIDTH); returns those (k, WIDTH + 2) of the spans that have ended."""
+        """Add rows (n, WIDTH); return the rows (k, WIDTH + 2) to be kept of finished spans."""
         if not len(rows):
             return np.empty((0, WIDTH + 2))
         whole, numbered, error = self._number(rows)
@@ -136,7 +134,7 @@ class Thinner:
         return kept[:begin]
 
     def look(self, rows: np.ndarray) -> np.ndarray:
-        """Rows (k, WIDTH + 2) of the span under way and those behind it, if rows (n, WIDTH) were taken."""
+        """Return the rows (k, WIDTH + 2) of the present span and later ones that adding rows (n, WIDTH) would give."""
         return self._keep(self._number(rows)[1])[0] if len(rows) else self._open
 
     def _number(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, Sequence[np.ndarray]]:
@@ -175,7 +173,7 @@ class Thinner:
 def errors_of(
     bearing: JournalBearing, rows: np.ndarray, before: Sequence[np.ndarray]
 ) -> tuple[np.ndarray, Sequence[np.ndarray]]:
-    """Errors (n,) of the steps of rows (n, WIDTH) of a journal or a ball, and that of the pose behind them.
+    """Errors (n,) of the steps of rows (n, WIDTH) of a journal or a ball, and the error of the pose after them.
 
     See `errors_behind`.
     """
@@ -200,7 +198,7 @@ NAME = "{name}"
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class File:
-    """``record`` of a joint: accepted steps go to a file, and memory holds the last ones only.
+    """Option ``record`` of a joint: accepted steps are written to a file, and only the last ones are in memory.
 
     A step takes 0.5 KB on disk. `load_history` reads the file, also during a run and after a run was killed. A history
     reads an array from the file when the array is first used, 8 bytes of memory per step and component. A new record of
@@ -244,17 +242,17 @@ class File:
 
 
 class RowsOnDisk(NamedTuple):
-    """Rows of a record in a file as they were, read when they are asked for.
+    """Rows of a record in a file, which are read when they are used.
 
     Attributes
     ----------
     path : path
     joint : str
-        Whose they are, for messages.
+        Name of the joint, for messages.
     head : bytes
-        Of the file; empty as long as there is none.
+        Head of the file; empty without a file.
     settled : int
-        Rows that no others will replace.
+        Number of rows that will not be replaced.
     """
 
     path: pathlib.Path
@@ -263,7 +261,7 @@ class RowsOnDisk(NamedTuple):
     settled: int = 0
 
     def begin(self, known: Mapping[str, Any]) -> RowsOnDisk:
-        """Begin a new file, with a head that says what a reader has to know: who still reads the old one keeps it."""
+        """Begin a new file, with a head of data for readers; histories that read the old file keep it."""
         head = {"format": FORMAT, "record": secrets.token_hex(8), **known}
         self.path.parent.mkdir(parents=True, exist_ok=True)
         self.path.unlink(missing_ok=True)
@@ -272,7 +270,7 @@ class RowsOnDisk(NamedTuple):
         return new
 
     def add(self, rows: np.ndarray, number: int) -> RowsOnDisk:
-        """Write rows (n, WIDTH + 2) behind the others; those after the first ``number`` may be replaced by the next.
+        """Append rows (n, WIDTH + 2); the next call may replace those after the first ``number``.
 
         Raises
         ------
@@ -287,7 +285,7 @@ class RowsOnDisk(NamedTuple):
         return self._replace(settled=self.settled + number)
 
     def mapped(self) -> np.ndarray:
-        """Rows (n, WIDTH + 2) of the file, which are read where they are asked for.
+        """Memory map of the rows (n, WIDTH + 2) of the file.
 
         Raises
         ------
@@ -320,7 +318,7 @@ def read_head(path: str | pathlib.Path) -> dict[str, Any] | None:
 
 
 def require_own(path: pathlib.Path) -> None:
-    """Refuse a path that holds something else than a record."""
+    """Raise `InputError` for a path of a file that is not a record."""
     if path.exists() and (not path.is_file() or (path.stat().st_size and read_head(path) is None)):
         raise InputError(
             f"CreateLubricatedJoint.record: '{path}' holds something else than a record and is not replaced; name "
@@ -329,7 +327,7 @@ def require_own(path: pathlib.Path) -> None:
 
 
 def open_rows(path: str | pathlib.Path) -> RowsOnDisk:
-    """Open the whole rows that a file of `RowsOnDisk` has by now."""
+    """Open the complete rows of a file of `RowsOnDisk`."""
     path = pathlib.Path(path).absolute()
     with open(path, "rb") as file:
         head = file.read(HEAD)

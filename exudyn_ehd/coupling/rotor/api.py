@@ -24,11 +24,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# Speeds at which a threshold is first looked for between its limits.
+# Number of speeds between the limits at which a search for a threshold begins. Larger: slower, fewer missed ranges.
 SCAN = 16
 # Configurations of a system that the search overwrites, although a run or its history continues from them.
 CONFIGURATIONS = (CURRENT, START_OF_STEP)
-# Functions of films, which are evaluated here, once per state: Exudyn sees none meanwhile.
+# User functions of films, which are removed from Exudyn during a search, because films are evaluated here once per
+# state.
 FUNCTIONS = ("forceUserFunction", "jacobianUserFunction")
 
 
@@ -41,7 +42,7 @@ class StabilityMap:
     values : (k,) array
         Values of the parameter.
     thresholds : (k,) array
-        rad/s; inf where the rotor is stable up to the highest speed, 0 where it is unstable at the lowest.
+        Threshold speeds, rad/s; inf if the rotor is stable up to the highest speed, 0 if it is unstable at the lowest.
     whirl_ratios : (k,) array
         Frequency at the threshold over the speed; nan without one.
     limits : (float, float)
@@ -77,26 +78,26 @@ def SolveEquilibrium(
     rotors: Sequence[Index | Sequence[Index]] | None = None,
     ratios: Sequence[float] | None = None,
 ) -> RotorResult:
-    """Equilibrium of spinning rotors in all of their films at given speeds, linearised with all that the system holds.
+    """Find the equilibrium of spinning rotors in all their films at given speeds, and linearise the system about it.
 
-    All bodies rest but for the given spins; films, springs and constraints carry the static loads. The system's states
-    are not changed. The equations are in `exudyn_ehd.coupling.rotor.system`.
+    All bodies are at rest except for the given spins; films, springs and constraints carry the static loads. The
+    system's states are not changed. The equations are in `exudyn_ehd.coupling.rotor.system`.
 
     - Rotors: rigid bodies (any 3D node), one or several with fixed joints or springs between them, and
       ``ObjectBeamGeometricallyExact`` on rigid nodes. They must be the same in all directions about their axes;
       unbalance comes in by `RotorResult.unbalance_response`.
     - Loads with user functions have their value at the start time.
-    - Tilting pads: every pad is a film of the result, called "... pad 1" and so on, in the frame of the pad; its tilt,
-      its shift on a flexible pivot and their inertia take part in all vibrations.
+    - Tilting pads: every pad is a film of the result, called "... pad 1" and so on, in the frame of the pad. Its tilt
+      and its shift on a flexible pivot, with their inertia, take part in all vibrations.
     - Bearings: rigid surfaces, liners, flexible bushes and journals, but not those of finite-element bodies (`FEBore`,
       `FEJournal`), whose modes have mass. Bushes and journals deflect without inertia; the mesh of an `ANCFBush` counts
-      as a rigid part of its housing. With `ElrodAdams` and on surfaces that deflect the film follows a motion with a
-      delay: every vibration and every whirl sees it at its own frequency
+      as a rigid part of its housing. With `ElrodAdams` and on surfaces that deflect, the film follows a motion with a
+      delay: stiffness and damping are used at the frequency of each vibration and whirl
       (`exudyn_ehd.joint.static.dynamic_stiffness`). Films with heat have the temperature of the equilibrium, which
       vibrations do not change; nothing wears. Films on end faces take part, but the result's values of single films
       omit them.
-    - A film without load: at the exact centre K and C are those a little off it, half to two thirds of an unbroken
-      film's, since it ruptures on the side that opens (`exudyn_ehd.joint.model.rigid`).
+    - A film without load: at the exact centre K and C are those slightly off it. They are half to two thirds of those
+      of an unbroken film, since the film ruptures on the side that opens (`exudyn_ehd.joint.model.rigid`).
 
     Parameters
     ----------
@@ -106,10 +107,10 @@ def SolveEquilibrium(
         Speeds of the first rotor about its joint's z axis, rad/s, not 0. The search for each equilibrium starts from
         the one before, so give them in order.
     rotors : sequence or None, default None
-        One entry for every rotor. Either one of its bodies or nodes, to which all is added that turns with it through
-        beams, fixed joints and springs that hold all rotations; or a sequence of all of its bodies and nodes. In each
-        rotor the first one is driven at the constant speed, the others may twist against it. By default the rotors of
-        all journals.
+        One entry for every rotor: one of its bodies or nodes, or a sequence of all its bodies and nodes. With one
+        entry, all bodies are added that turn with it through beams, fixed joints and springs that hold all rotations.
+        In each rotor the first body is driven at the constant speed, the others may twist against it. None: the rotors
+        of all journals.
     ratios : (r,) sequence or None, default None
         Speed of each rotor divided by that of the first one, negative for the opposite sense; 1 by default.
 
@@ -120,8 +121,8 @@ def SolveEquilibrium(
     Raises
     ------
     InputError
-        For what the theory does not hold for: rotors that are not the same in all directions, bodies that nothing
-        holds, other kinds of films or bodies.
+        For systems outside the theory: rotors that are not the same in all directions, bodies that nothing holds, other
+        kinds of films or bodies.
     FilmError
         If no equilibrium was found at a speed; or if one is at the exact centre of a bearing with supply areas at the
         cavity pressure, where stiffness and damping are not defined.
@@ -155,10 +156,10 @@ def SolveThreshold(
     rotors: Sequence[Index | Sequence[Index]] | None = None,
     ratios: Sequence[float] | None = None,
 ) -> RotorResult | None:
-    """The lowest speed between two at which rotors in their films become unstable.
+    """Find the lowest speed, within limits, at which rotors in their films become unstable.
 
-    At the threshold the largest real part of the eigenvalues changes its sign; the speed is exact to 1e-9 of it. The
-    search looks at 16 speeds first: a range of instability narrower than their distance may be missed.
+    At the threshold the largest real part of the eigenvalues changes its sign; the relative error of the speed is 1e-9.
+    The search starts with 16 speeds: a range of instability narrower than their distance may be missed.
 
     Parameters
     ----------
@@ -172,7 +173,7 @@ def SolveThreshold(
     Returns
     -------
     RotorResult or None
-        Result at the one speed of the threshold, ``speeds[0]``; None if the rotor is stable up to ``highest``.
+        Result at the threshold speed, ``speeds[0]``; None if the rotor is stable up to ``highest``.
 
     Raises
     ------
@@ -209,7 +210,7 @@ def stability_map(
     values : (k,) sequence
         Values of the parameter, in its own unit.
     lowest, highest : float
-        Speeds between which thresholds are looked for, rad/s, as in `SolveThreshold`.
+        Speeds between which thresholds are searched for, rad/s, as in `SolveThreshold`.
 
     Returns
     -------
@@ -250,7 +251,7 @@ def _limits(where: str, lowest: float, highest: float) -> tuple[float, float]:
 
 
 def _threshold(search: EquilibriumSearch, low: float, high: float) -> tuple[RotorResult | None, bool]:
-    """The lowest speed at which the rotor is not stable, None without one; whether it is unstable at the first."""
+    """Return the result at the lowest threshold, None without one, and whether the rotor is unstable at ``low``."""
 
     def at(speed: float) -> RotorResult:
         return _result(search, [search.at(speed)])
@@ -271,7 +272,7 @@ def _threshold(search: EquilibriumSearch, low: float, high: float) -> tuple[Roto
 def _search(
     mbs: exu.MainSystem, rotors: Sequence[Index | Sequence[Index]] | None, ratios: Sequence[float] | None
 ) -> Iterator[EquilibriumSearch]:
-    """A search in a system that gets its states and films back."""
+    """Context with a search in a system, whose states and films are restored at the end."""
     require_system(WHERE, mbs, assembled=True)
     joints = joints_of(mbs)
     if not joints:
@@ -301,7 +302,7 @@ def _search(
 
 
 def _result(search: EquilibriumSearch, states: list[State]) -> RotorResult:
-    """The record of states of one search."""
+    """Result with the states of one search."""
     system = search.system
     layout = Layout(
         nodes={number: node.own.start for number, node in system.nodes.items()},

@@ -1,4 +1,4 @@
-"""The films of a system about a state in which rotors spin, in the directions x and rates u of `system`."""
+"""Films of a system about a state in which rotors spin, in the directions x and rates u of `system`."""
 
 from __future__ import annotations
 
@@ -107,14 +107,14 @@ class RotorFilm:
             )
         self.places = np.concatenate((housing.places, journal.places))
         self.motion, self.rates = np.zeros(10), np.zeros(self.places.size)
-        # with the place along the axis where there are films on end faces
+        # with films on end faces the motion contains the axial position
         self.faces, self.kinematics, self._place = joint.element.faces, joint.element.collars, np.zeros(11)
         self._on_faces: ThrustEvaluation | None = None
         self._near: History | None = None
         self._told = False
 
     def update(self, q: np.ndarray, u: np.ndarray) -> None:
-        """Bring the journal's motion to a state."""
+        """Update the journal's motion to a state."""
         for side in self.sides:
             side.update(self.mbs, q, u, None)
         self.rates = u[self.places]
@@ -124,7 +124,7 @@ class RotorFilm:
             self._on_faces = self.faces.evaluate(self._place, self._near)
 
     def evaluate(self) -> Evaluation | None:
-        """The film at the motion; None if there is none, or none on an end face."""
+        """Evaluate the film at the motion; None without a film here or on an end face."""
         found = self._on_faces
         if not np.all(np.isfinite(self.motion)) or (found is not None and found.status is not Status.CONVERGED):
             return None
@@ -139,7 +139,7 @@ class RotorFilm:
         return evaluation if evaluation.status is Status.CONVERGED else None
 
     def memory(self, evaluation: Evaluation, free: np.ndarray) -> FilmMemory | None:
-        """Response of the film just evaluated in directions ``free`` (N, n); None of a film without a memory."""
+        """Response of the last evaluated film in directions ``free`` (N, n); None if K and C are constant."""
         slow, response = response_of(evaluation)
         if response is None:
             return None
@@ -147,9 +147,9 @@ class RotorFilm:
         return FilmMemory(response, slow, own.T @ (by_wrench[:, LOADS] * SIGNS), self.by_place[:PLACES] @ own)
 
     def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forces (n,) on ``places`` of a wrench (6,) with tangent (6, 10) and of films on end faces, after `update`.
+        """Generalized forces (n,) of a wrench (6,) and of films on end faces, and their derivatives (n, n) to x and u.
 
-        Behind them their derivatives (n, n) by x and u.
+        ``tangent`` (6, 10) is that of the wrench; `update` must have run.
         """
         whole = np.zeros((6, len(self._place)))
         whole[:, :10] = tangent[:, :10]
@@ -171,8 +171,8 @@ class RotorFilm:
         return self._wrench_map() @ (self.ratio * change)
 
     def support(self, wrench: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Wrench (6,) and tangent (6, 10) of stiff springs along the bearing, with a wrench at ``middle`` (2,)."""
-        # of the size of the film's own where it carries much, N/m
+        """Wrench (6,) and tangent (6, 10) of stiff springs in place of the film, about the position ``middle`` (2,)."""
+        # N/m, of the size of the stiffness of a heavily loaded film
         stiffness = 10.0 * self.bearing.reference_force(self.motion[8]) / self.bearing.radial_clearance
         tangent = np.zeros((6, 10))
         tangent[LOADS, range(4)] = -stiffness * SIGNS * [1.0, 1.0, *[self.bearing.length**2 / 12.0] * 2]
@@ -180,9 +180,9 @@ class RotorFilm:
         return wrench + tangent @ away, tangent
 
     def guess(self, forces: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Wrench (6,) and place (2,) of the journal where this film may carry the load of its spring.
+        """Initial guesses of wrench (6,) and position (2,) of the journal for the load of the film's spring.
 
-        The first pad of a bearing answers for all, the others with nothing.
+        For tilting pads the first pad returns those of all pads, the others return an empty list.
 
         Parameters
         ----------
@@ -225,7 +225,7 @@ class RotorFilm:
         return min(1.0, allowed / max(closed, 1e-300))
 
     def found(self, evaluation: Evaluation, tangent: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray | float]:
-        """Return the values of one film at its equilibrium for `RotorResult`, and enter its bore into q (n,)."""
+        """Return the values of one film at its equilibrium for `RotorResult`, and write its bore's coordinates to q."""
         force, known = evaluation.wrench[:2], evaluation.quantities()
         where = f"{WHERE}, joint '{self.name}'"
         self.bore.enter(q, evaluation, self.frames[0])
@@ -266,9 +266,9 @@ def _spinning_side(joint: Joint, side: object, system: SpinningSystem) -> Spinni
 
 
 def film_model(joint: Joint) -> BearingModel:
-    """The model of a film that has stiffness and damping about a position at rest; `InputError` for others."""
+    """Return the model of a joint's film; `InputError` for films without stiffness and damping about a position."""
     where, element, model = f"{WHERE}: joint '{joint.name}'", joint.element, joint.element.model
-    # a bush or journal with modes of its own follows the film; those of a finite-element body have its mass
+    # modes of a bush or journal of the bearing have no mass; those of a finite-element body have
     known = type(element) in (FilmElement, NodalFilmElement) or element.is_massless
     if not known or not isinstance(model, BearingModel):
         raise InputError(

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# Force that a vibration may leave in the whole dynamic stiffness, over the largest of its parts.
+# Largest unbalanced force of a vibration in the whole dynamic stiffness, over the largest of its terms. Larger:
+# spurious vibrations may be accepted.
 LEFT = 1e-7
 
 
@@ -81,12 +82,12 @@ class RotorResult:
     stiffness, damping : (k, j, 4, 4) arrays
         K and C of every film in its joint's frame: minus the derivative of (F_x, F_y, M_y, -M_x) on the journal, N and
         N m, with respect to (x, y, bx, by), m and rad, and to their rates. With `ElrodAdams`, liners, flexible bushes
-        and journals those of slow motions.
+        and journals they hold for slow motions.
     mass_matrix, damping_matrix, stiffness_matrix : (k, n, n) arrays
         M, D, K of small motions of the whole system, ``M y_tt + D y_t + K y = 0``, with gyroscopic terms in D. The
-        motion of all bodies in space is ``directions @ y``; spins of the driven nodes are held, constraints kept. With
-        a film that follows with a delay those of slow motions; eigenvalues and responses also take what ``memories``
-        add.
+        motion of all bodies in space is ``directions @ y``; spins of the driven nodes are prescribed, constraints are
+        satisfied. With films that follow with a delay the matrices hold for slow motions; eigenvalues and responses
+        also include ``memories``.
     directions : (k, N, n) array
         Map from y to displacements (m) and rotations (rad) in space of all nodes of rigid bodies, and to other
         coordinates.
@@ -97,13 +98,13 @@ class RotorResult:
     residual : (k,) array
         Largest unbalanced force divided by the films' loads.
     evaluations : (k,) array
-        Films solved for each speed.
+        Number of films solved for each speed.
     clearances : (j,) array
         Radial clearances, m.
     layout : Layout
         Map of bodies to the directions.
     memories : tuple of k tuples of FilmMemory
-        Dynamic stiffness of the films that follow with a delay, beyond that of slow motions.
+        Dynamic stiffness of films that follow with a delay, minus that of slow motions.
 
     Examples
     --------
@@ -165,33 +166,33 @@ class RotorResult:
         return values, self.directions @ np.take_along_axis(vectors, order[:, None, :], axis=2)
 
     def _beyond(self, k: int, s: complex) -> np.ndarray:
-        """Dynamic stiffness (n, n) of motions exp(s t) at a speed beyond that of slow motions."""
+        """Dynamic stiffness (n, n) of motions exp(s t) at speed number k, minus that of slow motions."""
         return sum((film.beyond(s) for film in self.memories[k]), np.zeros(self.mass_matrix.shape[1:]))
 
     @property
     def eigenvalues(self) -> np.ndarray:
-        """(k, m) complex: growth rate (1/s) + i frequency (rad/s), sorted by the signed frequency; m = 2n.
+        """Eigenvalues (k, m), complex: growth rate (1/s) + i frequency (rad/s), sorted by signed frequency; m = 2n.
 
-        On flexible bushes and journals there are more: the film swings with the surface, too, in waves around the bore.
-        Of films that follow a vibration with a delay (`ElrodAdams`, liners, compressible volumes) the oil content
-        swings, too; the motions in which the bodies take the largest part are told, 2n, or one more that belongs to
-        another. Of speeds with fewer motions than others some places are nan, here and in ``modes``.
+        With flexible bushes and journals there are more, because film and surface also vibrate in waves around the
+        bore. In films that follow a vibration with a delay (`ElrodAdams`, liners, compressible volumes) the oil content
+        vibrates too. Then those 2n motions are returned in which the bodies have the largest part, or one more to
+        complete a pair. Speeds with fewer motions than others have nan in some entries, here and in ``modes``.
         """
         return self._modes[0]
 
     @property
     def modes(self) -> np.ndarray:
-        """(k, N, m) complex: mode shapes, the motion of all bodies in space with each of the eigenvalues."""
+        """Mode shapes (k, N, m), complex: motion of all bodies in space for each eigenvalue."""
         return self._modes[1]
 
     @property
     def growth(self) -> np.ndarray:
-        """(k,) largest real part of the eigenvalues, 1/s; positive: unstable, small motions grow."""
+        """Largest real part (k,) of the eigenvalues, 1/s; positive: unstable, small motions grow."""
         return np.nanmax(self.eigenvalues.real, axis=1)
 
     @property
     def is_stable(self) -> np.ndarray:
-        """(k,) True where every small motion decays."""
+        """Stability (k,): True if every small motion decays."""
         return self.growth < 0.0
 
     def campbell(self) -> dict[str, np.ndarray]:
@@ -238,13 +239,13 @@ class RotorResult:
 
         The force of an unbalance U = mass x distance is U Omega^2 and turns with the rotor; displacements solve
         ``(K - Omega^2 M + i Omega D) y = f``. They are valid while they are small against the film thickness, and only
-        at speeds at which the equilibrium is stable (``is_stable``): at others the rotor whirls away.
+        at speeds at which the equilibrium is stable (``is_stable``): at others the whirl grows.
 
         Parameters
         ----------
         unbalance : dict
-            Body or node number: U in kg m (1e-6 for 1 g mm); all on one rotor. A complex U gives the angle at which
-            it sits, counted in the sense of rotation: 1j is 90 degrees ahead of 1.
+            U in kg m (1e-6 for 1 g mm) by body or node number; all on one rotor. The argument of a complex U is the
+            angle of the unbalance in the sense of rotation: 1j is 90 degrees ahead of 1.
 
         Returns
         -------
@@ -427,15 +428,15 @@ def vibrations_in_films_that_follow(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Eigenvalues (m,) and vectors (n, m) of a system with films that follow it with a delay.
 
-    With the coordinates w of films and flexible bores (`FilmResponse.linear`), z = (y, w), and v = s z where second
-    rates count,
+    With the coordinates w of films and flexible bores (`FilmResponse.linear`), z = (y, w), and v = s z for coordinates
+    with second derivatives,
 
         -K z = s (D z + M v),    s z = v,
 
-    is one linear problem; its 1 / s are the eigenvalues of a matrix. Where oil content, liners or compressible volumes
-    follow, the 2n motions are taken in which the bodies take the largest part, and all that grow. That part is the
-    product of left and right eigenvectors in y and v over that in all coordinates. Where bores alone follow, motions
-    that die out without a swing and within a turn are left out. None is taken that does not solve the whole dynamic
+    is one linear problem; its 1 / s are the eigenvalues of a matrix. If oil content, liners or compressible volumes
+    follow with a delay, the 2n motions in which the bodies have the largest part are returned, and all that grow. This
+    part is the product of left and right eigenvectors in y and v over that in all coordinates. If only bores follow,
+    motions that decay within a turn without oscillation are omitted. All returned motions satisfy the whole dynamic
     stiffness.
     """
     n, whole = len(M), []
@@ -453,12 +454,12 @@ def vibrations_in_films_that_follow(
     inverse, left, vectors = eig(np.vstack((moved, np.eye(size, size + fast.size)[fast])), left=True)
     there = np.abs(inverse) > ROUNDING * np.abs(inverse).max()
     values, left, vectors = 1.0 / inverse[there].astype(complex), left[:, there], vectors[:, there]
-    # round-off leaves an imaginary part to motions that only decay
+    # remove imaginary parts that are round-off in motions without oscillation
     values = np.where(np.abs(values.imag) > LEFT * np.abs(values), values, values.real)
     if any(film.response.remembers for film in films):
         own, products = np.append(np.arange(n), size + np.flatnonzero(fast < n)), left.conj() * vectors
         part = np.abs(products[own].sum(axis=0) / products.sum(axis=0))
-        # both of a pair
+        # a tolerance, so that both motions of a pair are taken
         taken = (part >= (1.0 - LEFT) * np.sort(part)[-2 * n]) | (values.real > 0.0)
     else:
         taken = values.real >= -np.maximum(np.abs(values.imag), speed / (2.0 * np.pi))
@@ -468,6 +469,6 @@ def vibrations_in_films_that_follow(
 
 
 def _left(M: np.ndarray, D: np.ndarray, K: np.ndarray, films: Sequence[FilmMemory], s: complex, y: np.ndarray) -> float:
-    """Force that a vibration leaves in the whole dynamic stiffness, over the largest of its parts."""
+    """Unbalanced force of a vibration in the whole dynamic stiffness, over the largest of its terms."""
     terms = np.array([s**2 * M @ y, s * D @ y, K @ y, *(film.beyond(s) @ y for film in films)])
     return float(np.abs(terms.sum(axis=0)).max() / np.abs(terms).max())

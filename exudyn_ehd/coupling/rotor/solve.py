@@ -1,12 +1,12 @@
 """Equilibrium of rotors in all of their films, followed over the speed.
 
-All coordinates rest but the spins, which are given; the torque that a constant speed takes acts on the driven node, the
-first of each rotor, about its own axis. The unknowns are the places of all bodies, by Newton's method with the exact
-tangents of the films and differences of the forces of all else (`system`), from speed to speed along the tangent of the
-branch, ``K dx/dOmega = -dr/dOmega``.
+All coordinates are at rest except for the given spins. The torque for a constant speed acts on the driven node, the
+first of each rotor, about its axis. The unknowns are the positions of all bodies. Newton's method uses the exact
+tangents of the films and differences of all other forces (`system`). The search goes from speed to speed along the
+tangent of the branch, ``K dx/dOmega = -dr/dOmega``.
 
-The first place: every film as a stiff spring tells the load that it has to carry, and `first_guess` the place for that
-load.
+Initial guess: with every film replaced by a stiff spring, the springs' forces are the loads of the films, and
+`first_guess` gives the positions for these loads.
 """
 
 from __future__ import annotations
@@ -28,36 +28,38 @@ from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.status import ROUNDING, FilmError, InputError
 
-# Unbalance over the loads of the films that counts as none, and steps of Newton's method that may pass.
+# Tolerance of the unbalance over the loads of the films, and largest number of steps of Newton's method.
 TOLERANCE, STEPS = 1e-8, 40
 NOT_HELD = (
     "nothing holds {}; hold it by a film, a spring or a constraint, a shaft along its axis by "
     "CreateLubricatedJoint(axial=ehd.Held())."
 )
 NO_MASS = "{} moves without mass or inertia; give its body both, or hold it."
-# Angle by which rotors are turned to see that they are the same in all directions, rad, and how far they may differ.
+# Angle, rad, by which rotors are turned to check that they are the same in all directions, and largest relative
+# difference of their matrices.
 TURN, ISOTROPIC = 1.0, 1e-4
-# Smallest stiffness, and mass, over the largest, with rotations at the length of a bearing, that a body has.
+# Smallest stiffness, and smallest mass, of a body over the largest one; rotations are multiplied by a bearing's length.
+# Below them a body counts as not held, or without mass: an error.
 SOFTEST, LIGHTEST = 1e-11, 1e-13
 
 
 class ForceBalance(NamedTuple):
-    """All forces at a state, in the N directions x.
+    """Balance of all forces at a state, in the N directions x.
 
     Attributes
     ----------
     r : (N,) array
-        Residual of the balance, constraints with their multipliers so far included.
+        Residual of the balance, with the constraint forces of the present multipliers.
     K, r_u : (N, N) arrays
-        Its derivatives, K with the turning of the spins.
+        Derivatives of r to x and u; K includes the rotation of the spin vectors.
     free : (N, n) array
-        Directions that constraints and drives leave.
+        Directions that constraints and drives leave free.
     mend : (N,) array
-        The way to where constraints hold.
+        Step that satisfies the constraints.
     multipliers : (m + r,) array
         Change of the multipliers, and the torques of the drives.
     residual, rounding : float
-        Unbalance over the films' loads, and what of it is the rounding of places times their stiffness.
+        Unbalance over the films' loads, and its part by round-off of positions times stiffness.
     """
 
     r: np.ndarray
@@ -70,12 +72,12 @@ class ForceBalance(NamedTuple):
     rounding: float
 
 
-# Values of one equilibrium by their names in `RotorResult`, and what its films remember.
+# Values of one equilibrium by their names in `RotorResult`, and the memories of its films.
 State: TypeAlias = tuple[dict[str, np.ndarray], tuple[FilmMemory, ...]]
 
 
 class EquilibriumSearch:
-    """Search for the equilibria of one system, whose films are switched off in Exudyn meanwhile.
+    """Search for the equilibria of one system, whose films are switched off in Exudyn during the search.
 
     Parameters
     ----------
@@ -104,7 +106,7 @@ class EquilibriumSearch:
         self.speed, self.count = math.nan, 0
 
     def at(self, speed: float) -> State:
-        """The equilibrium at a speed, rad/s, looked for from the last one found: what `RotorResult` has of each.
+        """Find the equilibrium at a speed, rad/s, starting from the last one; return its values for `RotorResult`.
 
         Raises
         ------
@@ -151,7 +153,7 @@ class EquilibriumSearch:
         }, tuple(memory for memory in memories if memory is not None)
 
     def _start(self) -> None:
-        """Move all bodies to a first place near the equilibrium, and check what the theory asks of them."""
+        """Move all bodies to an initial guess of the equilibrium, and check the assumptions of the theory."""
         self.rest = self.system.derivatives()
         supports = [(np.zeros(6), np.zeros(2)) for _ in self.films]
         for _ in range(3):
@@ -182,12 +184,12 @@ class EquilibriumSearch:
             evaluation = film.evaluate()
             if evaluation is None:
                 return None
-            # films of one bearing's description have models of their own: the tangent is this evaluation's
+            # each film has a separate model, so that the tangent belongs to this evaluation
             out.append((evaluation, evaluation.steady_tangent(exact=True)))
         return out
 
     def _balance(self, acting: list[tuple[np.ndarray, np.ndarray]]) -> ForceBalance:
-        """All forces at the state, for wrenches (6,) and tangents (6, 10) in the films and the system's last `rest`."""
+        """Balance of all forces at the state, for wrenches (6,) and tangents (6, 10) of the films."""
         system, size = self.system, 0.0
         r, error = system.balance(system.q, system.spin())
         K, r_u = self.rest[0].copy(), self.rest[1].copy()
@@ -201,7 +203,7 @@ class EquilibriumSearch:
         K += r_u @ system.turning()
         for k, rotor in enumerate(system.rotors):
             turns = slice(system.nodes[rotor.nodes[0]].own.start + 3, system.nodes[rotor.nodes[0]].own.stop)
-            # the driving torque follows the axis of its node
+            # the driving torque turns with the axis of its node
             K[turns, turns] -= self.torques[k] * skew(system.axis(k))
         held = np.vstack((system.constraints(), system.drives()))
         left, values, right = np.linalg.svd(held)
@@ -223,7 +225,7 @@ class EquilibriumSearch:
         return mend - free @ np.linalg.solve(free.T @ balance.K @ free, free.T @ (balance.r + balance.K @ mend))
 
     def _move(self, step: np.ndarray) -> None:
-        """Move the state by a step, shortened where it would use up the gap of a film."""
+        """Move the state by a step, shortened if it would close the gap of a film."""
         self._update()
         self.system.q = self.system.moved(min(film.room(step) for film in self.films) * step)
 
@@ -265,7 +267,7 @@ class EquilibriumSearch:
 def require_regular(
     system: SpinningSystem, weights: np.ndarray, matrix: np.ndarray, free: np.ndarray, least: float, message: str
 ) -> None:
-    """Refuse a body that moves without stiffness or mass, by a ``message`` that has a place for its name.
+    """Raise `InputError` for a body that moves without stiffness or mass; ``message``: text with a place for its name.
 
     Parameters
     ----------
@@ -285,7 +287,7 @@ def require_regular(
 
 
 def require_axis(mbs: exu.MainSystem, system: SpinningSystem) -> None:
-    """Refuse constraints that keep a rotor from turning about its axis; those on coordinates count as drives."""
+    """Raise `InputError` for constraints that prevent a rotor's spin; those on coordinates count as drives."""
     kinds = {}
     for number, data in objects_of(mbs):
         kinds.update(dict.fromkeys(map(int, mbs.systemData.GetObjectLTGAE(int(number))), data["objectType"]))
@@ -299,7 +301,7 @@ def require_axis(mbs: exu.MainSystem, system: SpinningSystem) -> None:
 
 
 def require_isotropy(system: SpinningSystem, weights: np.ndarray) -> None:
-    """Refuse rotors that are not the same in all directions: their equations change as they turn."""
+    """Raise `InputError` for rotors that are not the same in all directions, whose equations change as they turn."""
     known, before = system.q, system.matrices()
     system.q = system.turned(TURN)
     after = system.matrices()
@@ -318,7 +320,7 @@ def require_isotropy(system: SpinningSystem, weights: np.ndarray) -> None:
 
 
 def require_steady_load(system: SpinningSystem, weights: np.ndarray, free: np.ndarray, size: float) -> None:
-    """Refuse loads that turn with a rotor, as the unbalance that its model has; ``size`` is the films' load, N."""
+    """Raise `InputError` for loads that turn with a rotor, such as an unbalance; ``size``: load of the films, N."""
     known, u = system.q, system.spin()
     before = system.balance(known, u)[0]
     change = np.abs(weights * (free @ (free.T @ (system.balance(system.turned(TURN), u)[0] - before))))
@@ -330,7 +332,7 @@ def require_steady_load(system: SpinningSystem, weights: np.ndarray, free: np.nd
 
 
 def named(system: SpinningSystem, direction: int) -> str:
-    """A direction of x in words."""
+    """Name of a direction of x, for messages."""
     for number, node in system.nodes.items():
         if node.own.start <= direction < node.own.stop:
             k = direction - node.own.start

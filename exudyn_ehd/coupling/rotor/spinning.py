@@ -27,9 +27,9 @@ class Rotor:
     Attributes
     ----------
     nodes : list of int
-        The first is the driven one.
+        Nodes of the rotor; the first one is driven.
     axes : list of (3,) arrays
-        The axis of each in its own frame.
+        Axis of the spin in the frame of each node.
     frame : (3, 3) array
         Axes in space: two transverse ones, x and y of a joint, and that of the spin.
     ratio : float
@@ -45,7 +45,7 @@ class Rotor:
 def find_rotors(
     mbs: exu.MainSystem, joints: list[Joint], rotors: Rotors, ratios: Sequence[float] | None
 ) -> list[Rotor]:
-    """The rotors of a system: those named, or the bodies of all journals with what turns with them."""
+    """Rotors of a system: the given ones, or the bodies of all journals with all bodies that turn with them."""
     links = _links(mbs)
     if rotors is None:
         journals = [joint.element.sides[1].nodes[0] for joint in joints if joint.element.sides[1].nodes]
@@ -110,7 +110,7 @@ def _connected(first: int, links: dict[int, set[int]]) -> list[int]:
 
 
 def _links(mbs: exu.MainSystem) -> dict[int, set[int]]:
-    """Return for every node those that turn with it, through beams, fixed joints and torsional springs."""
+    """Return for every node the nodes that turn with it through beams, fixed joints and torsional springs."""
     links: dict[int, set[int]] = {}
     for _, data in objects_of(mbs):
         nodes = set()

@@ -1,13 +1,13 @@
-"""An Exudyn system about a state in which rotors spin and all else rests, without the forces of its films.
+"""Exudyn system, without the forces of its films, about a state in which rotors spin and everything else is at rest.
 
 Every rigid node is described in space by a small displacement and a small rotation of its frame, ``x = (dp, dphi)``,
-and by its velocity and angular velocity, ``u = (v, omega)``; any other coordinate by itself. With q_t = B(q) u the
-equations of motion of the system are the balance of forces and moments on its bodies::
+and by its velocity and angular velocity, ``u = (v, omega)``. Any other coordinate is its own direction. With q_t = B(q)
+u the equations of motion of the system are the balance of forces and moments on its bodies::
 
     r(x, u, u_t) = B^T (M(q) q_tt - f(q, q_t) + C(q)^T mu) = 0,    q_tt = B (u_t - (dB^-1/dt) B u).
 
-A rotor at rest but for its spin has omega_i = Omega a_i, with the axis a_i of its node i. A small motion about it is no
-change of omega alone, as the frame that is turned turns with it::
+A rotor at rest except for its spin has omega_i = Omega a_i, with the axis a_i of its node i. A small motion about this
+state changes omega also by the rotation of the frame::
 
     d omega = dphi_t + dphi x omega,    d omega_t = dphi_tt + dphi_t x omega,
 
@@ -24,10 +24,10 @@ Source of the variation of omega: dA = [dphi] A and A_t = [omega] A give [d omeg
 
 Flexible bushes and journals of bearings: their coordinates follow the films, and x is without them
 --------------------------------------------------------------------------------------------------
-Modes of a bush or a journal have no mass. With the journal they move as the balance of the film and its surface says,
-which is part of the film's K, C and dynamic stiffness (`exudyn_ehd.joint.static.dynamic_stiffness`). The mesh of an
-`ANCFBush` has mass. It counts as a rigid part of the housing, whose node carries its nodes: a bush is much stiffer than
-its film, and its own vibrations are far above those of a rotor.
+Modes of a bush or a journal have no mass. Their motion follows from the balance of film and surface, which is part of
+the film's K, C and dynamic stiffness (`exudyn_ehd.joint.static.dynamic_stiffness`). The mesh of an `ANCFBush` has mass.
+It counts as a rigid part of the housing, with whose node its nodes move: a bush is much stiffer than its film, and the
+frequencies of its vibrations are far above those of a rotor.
 """
 
 from __future__ import annotations
@@ -56,7 +56,8 @@ from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.status import InputError
 
-# Steps of the differences: m or rad, and m/s or rad/s, in which the forces of bodies are quadratic.
+# Steps of the difference quotients: of x, m or rad, and of u, m/s or rad/s. The latter may be large, because the forces
+# of bodies are quadratic in u.
 STEP, RATE_STEP = 1e-6, 1e-2
 
 COORDINATES_OF = {
@@ -69,16 +70,16 @@ NodeRates: TypeAlias = tuple[np.ndarray, np.ndarray]
 
 
 class TurningNode:
-    """Node of a rigid body or a beam, with what it carries: the nodes of a flexible bush, which move with it rigidly.
+    """Node of a rigid body or a beam, with the nodes of a flexible bush that move rigidly with it.
 
     Parameters
     ----------
     side : NodeSide
-        Its own frame.
+        Frame of the node.
     places : (n,) array
-        Its coordinates among those of the system.
+        Indices of its coordinates among those of the system.
     first : int
-        Place of its displacement and rotation (6,) in x.
+        Index of its displacement and rotation (6,) in x.
 
     Attributes
     ----------
@@ -91,9 +92,9 @@ class TurningNode:
         self.count, self.carried = places.size, np.zeros((0, 3))
 
     def carry(self, places: np.ndarray, reference: np.ndarray) -> None:
-        """Take along nodes with coordinates at ``places`` (3 k,) and reference positions (k, 3), m.
+        """Add nodes that move with this node, with coordinates at ``places`` (3 k,) and reference positions (k, 3), m.
 
-        Their centripetal acceleration is omitted: what carries them does not spin.
+        Their centripetal acceleration is omitted, because a housing does not spin.
         """
         self.places = np.concatenate((self.places, places))
         self.carried = np.concatenate((self.carried, reference))
@@ -142,7 +143,7 @@ class TurningNode:
 
 
 class HeldBore:
-    """Coordinates of the bush and the journal of one film; none of rigid surfaces and liners.
+    """Coordinates of the flexible bush and journal of one film; empty for rigid surfaces and liners.
 
     Parameters
     ----------
@@ -152,7 +153,7 @@ class HeldBore:
     Attributes
     ----------
     places : (k,) array
-        Places in the system's coordinates.
+        Indices in the system's coordinates.
     housing : int
         Node that carries a mesh; -1 without one.
     reference, local : (n, 3) arrays
@@ -170,7 +171,7 @@ class HeldBore:
             self.housing = int(element.sides[0].nodes[0]) if element.sides[0].nodes else -1
 
     def enter(self, q: np.ndarray, evaluation: Evaluation, frame: np.ndarray) -> None:
-        """Bring the system's q (n,) to a film's balance; ``frame`` is that of the housing."""
+        """Write the coordinates of a film's bore to the system's q (n,); ``frame``: frame of the housing."""
         if not isinstance(evaluation, ElasticEvaluation):
             return
         elasticity = evaluation.model.elasticity
@@ -327,7 +328,7 @@ class SpinningSystem:
         return B.T @ self._mass_matrix() @ B
 
     def constraints(self) -> np.ndarray:
-        """C B (m, size) at the state: what constraints leave no freedom."""
+        """Constraint matrix C B (m, size) at the state."""
         n, m = self.q.size, self.multipliers.size
         if m == 0:
             return np.zeros((0, self.size))

@@ -2,12 +2,12 @@
 
 Module map
 ----------
-solve              SolveDynamic, SolveStatic; initial velocities that fit no joint
-newton             where Newton starts in a step, how far it goes, where it ends, which of its results are refused
-periodic           runs that end when their orbits have closed; how far a run is, where somebody looks
+solve              SolveDynamic, SolveStatic; warning of initial velocities that fit no joint
+newton             initial guess, step limits, tolerances and rejected results of Newton's method
+periodic           runs that end when their orbits have closed; progress of a run
 step_size          steps chosen by their error
-restart            states to go on from; joints placed in equilibrium
-joint_state        what a joint knows besides coordinates, and whose it is
+restart            states from which runs continue; joints placed in equilibrium
+joint_state        state of a joint in addition to coordinates, and the check of its owner
 sparse             SolveDynamicSparse
-system_matrix      its iteration matrix
+system_matrix      iteration matrix of SolveDynamicSparse
 """

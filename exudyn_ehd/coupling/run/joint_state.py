@@ -1,4 +1,4 @@
-"""State of a joint besides Exudyn's coordinates, and the check that a stored state belongs to a joint."""
+"""State of a joint in addition to Exudyn's coordinates, and the check that a stored state belongs to a joint."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ class JointState:
     rows : (n, k) array
         The record of accepted steps up to that time.
     begin : StepStart or None
-        Data of the next step's start from which the film takes its rates (`exudyn_ehd.joint.step_rates`); None where it
-        takes the velocities.
+        Start of the next step, from which the film's rates are computed (`exudyn_ehd.joint.step_rates`); None if the
+        film uses the velocities.
     modes : (p, k) array or None
         Displacements and stiffness of the bore's modes, by which a joint with other modes rejects the state.
 
@@ -96,7 +96,7 @@ class Joint:
 
     @property
     def history(self) -> JointHistory:
-        """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind.
+        """Return all accepted steps up to now as NumPy arrays; rejected steps are not recorded.
 
         `exudyn_ehd/API.md` and `JointHistory` describe the arrays with their units and signs.
 
@@ -121,7 +121,7 @@ class Joint:
         return self.element.steps.history(self.mbs, complete=self.element.presence.found(self.mbs) is not None)
 
     def state(self) -> JointState:
-        """Return the state besides Exudyn's coordinates at the last accepted step: memory of the film, and record.
+        """Return the state in addition to Exudyn's coordinates at the last accepted step: film memory and record.
 
         See `SaveState` for the whole system.
         """
@@ -138,7 +138,7 @@ class Joint:
         )
 
     def _require_end(self, method: str) -> None:
-        """Refuse a system that is not at the end of its run, as it was made for the joint."""
+        """Raise `InputError` unless the system, with the joint's items, is in the end state of its run."""
         where = f"{type(self).__name__}.{method}"
         require_system(where, self.mbs, assembled=True, of=f" of joint '{self.name}'")
         self.element.presence.require(self.mbs)
@@ -245,7 +245,7 @@ class Joint:
 
 
 def digest(bearing: JournalBearing) -> str:
-    """Digest of a bearing's description, arrays by content; modes of a body are told by `bore_modes_of`."""
+    """Digest of a bearing's description, arrays by content; modes of a body are compared by `bore_modes_of`."""
     bush, pin = bearing.bush, getattr(bearing, "journal", None)
     if isinstance(bush, ReducedBore):
         return fingerprint((dataclasses.replace(bearing, bush=None), bush.radius, bush.length))
@@ -257,17 +257,17 @@ def digest(bearing: JournalBearing) -> str:
 def bore_modes_of(element: FilmElement) -> np.ndarray | None:
     """Modes (p, k) of a film's bore: radial displacements at some places and stiffness.
 
-    Solvers of eigenvalue problems leave their signs and combinations open: modes of the same bush may be others.
+    Signs and combinations of modes depend on the eigenvalue solver: the same bush may have other modes.
     """
     if not isinstance(element, ModalFilmElement):
         return None
-    # any angles, rad, and shares of the length tell modes apart
+    # arbitrary angles, rad, and shares of the length, at which modes differ
     angles, places = np.linspace(0.3, 6.1, 7), element.model.bearing.length * np.array([-0.43, 0.11, 0.37])
     return np.vstack((element.bore.radial(angles, places).reshape(-1, element.stiffness.size), element.stiffness))
 
 
 def check_owner(joint: Joint, state: JointState) -> None:
-    """Refuse a state of another joint or bearing."""
+    """Raise `InputError` for a state of another joint or bearing."""
     require_type("LubricatedJoint.restore_state: state", state, JointState, hint=FILE)
     if state.name != joint.name:
         raise InputError(
@@ -296,7 +296,7 @@ def _same_modes(own: np.ndarray | None, stored: np.ndarray | None) -> bool:
 
 
 def _check_memory(joint: Joint, state: JointState) -> None:
-    """Refuse a memory or a start of a step that is none of this film's."""
+    """Raise `InputError` for a memory or a start of a step that does not fit this film."""
     model, memory, begin = joint.element.model, state.memory, state.begin
     bore = model.size if isinstance(model, ElasticBearingModel) else 0
     size = getattr(model, "motion_size", MOTION_SIZE + 2 * bore)

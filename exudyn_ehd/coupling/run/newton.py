@@ -1,69 +1,71 @@
 """Initial guess of Newton's method in a step of Exudyn's generalized alpha or Newmark integrator.
 
-Exudyn starts a step at zero accelerations, as the algorithm is printed (M. Arnold and O. Bruels, Multibody System
-Dynamics 18 (2007) 185). With accelerations a the first positions miss the solution by beta h^2 f a, f = (1 -
-alpha_f) / (1 - alpha_m), about 0.3 h^2 a for any spectral radius. A mechanism does not notice, a film does: a crank
-radius r at n steps per turn gives 0.3 r (2 pi / n)^2, 4 um for 43 mm and 360 steps, where films are 3 um thick.
-Newton's first force is then far beyond the film's: it takes two to four times the iterations, halves steps without
-need, and a tolerance relative to its first residual accepts forces that are wrong by more than the film carries.
+Exudyn starts a step at zero accelerations, as in M. Arnold and O. Bruels, Multibody System Dynamics 18 (2007) 185. With
+accelerations a the error of the first positions is beta h^2 f a, f = (1 - alpha_f) / (1 - alpha_m), about 0.3 h^2 a for
+any spectral radius. This is too much for a film: a crank radius r at n steps per turn gives 0.3 r (2 pi / n)^2, 4 um
+for 43 mm and 360 steps, where films are 3 um thick. The first force is then far too large. Newton's method needs two to
+four times the iterations, steps are halved without need, and a tolerance relative to the first residual accepts forces
+whose error exceeds the film's load.
 
 Accelerations that last are known from the steps before. With a guess g of them, Newton starts at
 
     q + beta h^2 f g,   dq/dt + gamma h f g,   d2q/dt2 + g,
 
-which satisfies the integrator's formulas like Exudyn's own start, so that the solution is the same. g goes on in a line
-through the last two accelerations if the last three lie in a line to a tenth of their change, over steps of one
-size (less straight ones prolong the ringing behind a halved step). Else it is the smaller one of the last two where
-they agree in sign. If these differ by more than half of the last one, as in an impact or a vibration of a few steps per
-period, there is no guess. Norms are those of all coordinates together, since what one would gain is lost where it meets
-another; but deformations of bodies, which ring while the body moves smoothly, are judged by themselves.
+which satisfies the integrator's formulas like Exudyn's start, so that the solution is the same. g is extrapolated from
+the last two accelerations if the last three, over equal steps, lie on a line to a tenth of their change (with less
+straight ones, extrapolation would prolong the ringing after a halved step). Otherwise g is the smaller one of the last
+two if they agree in sign, else 0. If they differ by more than half of the last one, as in an impact or a vibration of a
+few steps per period, there is no guess. Norms are those of all coordinates together. Only deformations of bodies, which
+may ring while the body moves smoothly, are judged separately.
 
-Constraints are what it must not upset. Newton's first iteration leaves them open by some (h v)^2 / L from Exudyn's
-start and by far less from this one. Forces do not feel what is the same in every step, but a change g from one step to
-the next as m g / (beta h^2): from one start to the other m v^2 / L at any step size, as much as the inertia. So
-Newton's method goes on where the opening jumps. Exudyn takes that for a contact that has opened or closed, and begins
-again at zero accelerations; here each further pass of a step starts where the last one has ended.
+Constraints need care. Newton's first iteration leaves them open by some (h v)^2 / L from Exudyn's start and by far less
+from this one. An opening that is the same in every step has no effect on forces. But a change g from one step to the
+next causes a force m g / (beta h^2): between both starts m v^2 / L at any step size, as large as the inertia. So
+Newton's method continues if the opening jumps. Exudyn treats this like a contact that has opened or closed, and would
+start again at zero accelerations; here each further pass of a step starts at the end of the last one.
 
 Steps that converge to a film that no bearing has
 -------------------------------------------------
-Newton's method may well converge where there is no film: behind the end of a pressure law, where forces only lead its
-iterates back, or at a pressure that no steel bears, into which too large a step has thrown the journal. Its iterates
-may pass there; its result may not. After Newton's method Exudyn asks for an error and a step size: a step with such a
-result is repeated with half its size, down to the smallest one, where it ends the run.
+Newton's method may converge to a state without a valid film: beyond the end of a pressure law, where forces only lead
+iterates back, or at a pressure that no steel bears, after too large a step. Iterates may lie there, but not the result.
+After Newton's method Exudyn asks for an error and a step size: a step with such a result is repeated with half its
+size, down to the smallest size, at which the run ends.
 
 Newton's method kept within the films
 -------------------------------------
-Exudyn's Newton method takes its steps whole. A film hardens towards the wall as 1 / gap^3 and more, and where it is
-hollow, or opens, it has hardly any stiffness: a step from there goes through the wall, where the film can't be
-evaluated or pushes back with 1e12 N, and the time step is halved for no fault of its own. From the thin side Newton's
-method converges step by step, from the thick side it overshoots. None of its steps may therefore close more than half
-of a film (the fraction to the boundary of interior point methods). With the ends of the journal's axis at p, moved by
-d, and the gap g = c - max |p| before, the part s of the step that is taken holds
+Exudyn's Newton method makes full steps. A film stiffens towards the wall as 1 / gap^3 and more, but a cavitated or
+opening film has hardly any stiffness. A step from there goes through the wall, where the film cannot be evaluated or
+has a force of 1e12 N, and the time step is halved without need. From the thin side Newton's method converges step by
+step, from the thick side it overshoots. So a step may close at most half of a film (as the fraction-to-the-boundary
+rule of interior point methods). With the ends of the journal's axis at p, moved by d, and the gap g = c - max |p|
+before the step, the part s of the step satisfies
 
     |p + s d| <= c - g / 2,   s = (sqrt((p d)^2 + d^2 ((c - g / 2)^2 - p^2)) - p d) / d^2,
 
-the smallest s of all films and ends. Coordinates, velocities and accelerations satisfy Newmark's formulas one by one,
-after a part of a step too: the solution stays what it is. Rotations of Lie groups don't add up, and keep their step.
-Films thinner than a thousandth of the clearance, on a contact, are left alone. Flexible bores are judged as undeformed:
-a journal that presses into one is free beyond the clearance, and on the way there the steps are a few more or fewer.
+with the smallest s of all films and ends. Coordinates, velocities and accelerations satisfy Newmark's formulas also
+after a part of a step, so that the solution is the same. Rotations of Lie groups are not additive and keep the full
+step. Films thinner than a thousandth of the clearance, on a contact, do not limit steps. Flexible bores are treated as
+undeformed: a journal beyond the clearance is not limited, and before that the number of steps changes a little.
 
-With a pressure law a film has another end: velocities v of the journal's axis at which no finite pressure carries it.
-The law's line behind that end is flatter than the law in front of it, so that Newton's method may jump from one side to
-the other and back for ever. Where it was behind the end, at v_b, and has come back to v, a step goes no more than half
-of the way there, d (v_b - v) <= |v_b - v|^2 / 2: a bisection, until Newton's method converges.
+A film with a pressure law has a second limit: velocities v of the journal's axis for which no finite pressure exists.
+The law's continuation beyond that end is flatter than the law, so that Newton's method may jump from one side to the
+other for ever. After an iterate v_b beyond the end and one at v before it, a step goes at most half of the way to v_b,
+d (v_b - v) <= |v_b - v|^2 / 2: a bisection, until Newton's method converges.
 
 Newton's tolerances in the measure of the films' and bushes' forces
 -------------------------------------------------------------------
-Exudyn's Newton method ends where the residual is a share of the step's first one, or below an absolute tolerance. A
-start close to the solution makes the first residual so small that a share of it is below what positions resolve: metres
-from the origin, or under meganewtons, a film's force has the rounding of the position times its stiffness, 1e-9 of
-itself and more. The step would be halved for nothing. From Exudyn's own start the first residual is about as large as
-the forces, so that its tolerance is a share of these; here too, with a tenth of it. The forces within a nodal bush, in
-a film or not, have the rounding of its displacements times the stiffness of its elements.
+Exudyn's Newton method ends if the residual is a share of the step's first one, or below an absolute tolerance. With an
+initial guess close to the solution the first residual is so small that a share of it is below round-off: metres
+from the origin, or under meganewtons, the round-off of a film's force is that of the position times its stiffness, 1e-9
+of the force and more. The step would be halved without need. From Exudyn's start the first residual is about as large
+as the forces, so that its tolerance is a share of the forces. Here the tolerance is a share of the forces too, a tenth
+as large. The round-off of the forces within a nodal bush is that of its displacements times the stiffness of its
+elements.
 
-Where no start is known, as in the first step, the first positions may lie deep in a contact, with forces of films and a
-residual millions of times those at the end: a share of it would let any state pass. As the films' forces fall below
-their first ones in a step, the relative tolerance shrinks alike. Residuals of other parts do not count.
+Without an initial guess, as in the first step, the first positions may lie deep in a contact, where film forces and
+residual are millions of times those of the solution. A share of this residual would accept any state. So the relative
+tolerance is reduced in proportion as the films' forces fall below their first ones in a step. Residuals of other parts
+have no influence on it.
 """
 
 from __future__ import annotations
@@ -86,11 +88,14 @@ from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import SMALL, Status
 
 _UserFunction: TypeAlias = Callable[..., Any]
-# Largest change of the accelerations from step to step with which they count as lasting, share of the last ones.
+# Largest change of the accelerations from step to step, over the last ones, with which a guess is made. Larger: guesses
+# also after impacts, which are worse than none.
 LARGEST_CHANGE = 0.5
-# Largest change of their change with which they go on in a line, share of their change.
+# Largest second difference of the accelerations, over their last change, with which they are extrapolated. Larger: more
+# ringing after halved steps.
 LARGEST_BEND = 0.1
-# Largest change of the opening of constraints from step to step, share of beta h^2 times the largest acceleration.
+# Change of the opening of constraints from step to step, over beta h^2 times the largest acceleration, above which a
+# step gets another pass of Newton's method. Larger: larger errors of constraint forces.
 LARGEST_JUMP = 3e-5
 
 
@@ -159,7 +164,7 @@ class StartGuess:
         accelerations += self.guess
 
     def go_on(self, own: _UserFunction, mbs: exu.MainSystem, t: float) -> list[float]:
-        """User function after Newton's method: another pass where constraints have opened or closed at a jump.
+        """User function after Newton's method: request another pass if the opening of constraints has jumped.
 
         The user's own is called first. A further pass of the step starts where this one has ended.
         """
@@ -188,12 +193,12 @@ def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.
     past : sequence of (float, (n,) array)
         Times and accelerations, oldest first.
     groups : (n,) array of int
-        Number of the group that a coordinate belongs to; each is judged by itself.
+        Number of each coordinate's group; groups are judged separately.
 
     Returns
     -------
     (n,) array or None
-        Zero in groups in which nothing lasts; None where there is but one step.
+        Accelerations, zero in groups without a guess; None if there is only one step.
     """
     if len(past) < 2:
         return None
@@ -217,8 +222,8 @@ def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.
 def coordinates_of(mbs: exu.MainSystem, bushes: Collection[int]) -> tuple[np.ndarray, np.ndarray]:
     """Mask (n,) and groups (n,) of the second-order coordinates.
 
-    The mask is one where displacements add, zero for Lie-group rotations. Deformations of a body are one group each but
-    those of ``bushes``, which follow the film at once; everything else is together.
+    The mask is one for additive coordinates, zero for Lie-group rotations. Deformations of each body are a separate
+    group, except those of ``bushes``, which follow the film at once; all other coordinates are one group.
     """
     size = len(mbs.systemData.GetODE2Coordinates())
     mask, groups = np.ones(size), np.zeros(size, dtype=np.intp)
@@ -236,7 +241,7 @@ def coordinates_of(mbs: exu.MainSystem, bushes: Collection[int]) -> tuple[np.nda
 
 
 def refuse(films: Sequence[FilmElement], own: _UserFunction, mbs: exu.MainSystem, t: float) -> list[float]:
-    """User function after Newton's method: a step of half the size where a film has no result.
+    """User function after Newton's method: request a step of half the size if a film has no valid result.
 
     Parameters
     ----------
@@ -259,14 +264,16 @@ def refuse(films: Sequence[FilmElement], own: _UserFunction, mbs: exu.MainSystem
     return [math.inf, half if size < 0.0 else min(size, half)]
 
 
-# Share of a film's gap that a step of Newton's method may close.
+# Largest share of a film's gap that a step of Newton's method may close. Larger: more overshooting; smaller: more
+# iterations.
 SHARE = 0.5
-# Share of the relative tolerance times the films' forces.
+# Absolute tolerance over the relative tolerance times the films' forces. Smaller: steps may be halved because of
+# round-off.
 FORCE_SHARE = 0.1
 
 
 class GapLimit:
-    """Takes back what a step of Newton's method closes too much.
+    """Shortening of Newton's steps that close a film too much.
 
     Parameters
     ----------
@@ -278,23 +285,23 @@ class GapLimit:
         self.films = films
         self.bores = {film: BoreGap(film.model.bearing) for film in films}
         self.before: list[np.ndarray] = []
-        # last motions behind the end of the films' pressure laws
+        # last motions beyond the end of the films' pressure laws
         self.behind: dict[FilmElement, np.ndarray] = {}
 
     def start(self, mbs: exu.MainSystem) -> None:
-        """Remember where Newton's method starts."""
+        """Store the state at which Newton's method starts."""
         self.before = [values.copy() for values in state_of(mbs)]
         self.behind.clear()
 
     def shorten(self, mbs: exu.MainSystem, additive: np.ndarray) -> None:
-        """Shorten the step that Newton's method has taken, where it closes a film by more than `SHARE`.
+        """Shorten the step that Newton's method has made, if it closes a film by more than `SHARE`.
 
         Parameters
         ----------
         mbs : exudyn.MainSystem
             Holds the state after the step.
         additive : (n,) array
-            Zero at the coordinates that keep their step, one elsewhere.
+            Zero for coordinates that keep the full step, else one.
         """
         part = 1.0
         for film in self.films:
@@ -313,7 +320,7 @@ class GapLimit:
             old[:] = new
 
     def _allowed_at_end(self, film: FilmElement, last: Trial, after: np.ndarray) -> float:
-        """Part of a step from in front of the end of a film's law that goes half of the way back behind it."""
+        """Part of a step, from before the end of a pressure law, that goes half of the way to the last motion beyond."""
         bearing = film.model.bearing
         if last.status == Status.NO_PRESSURE and bearing.yielding is None:
             self.behind[film] = last.bodies
@@ -323,7 +330,7 @@ class GapLimit:
 
 
 def allowed_part(bore: BoreGap, before: np.ndarray, after: np.ndarray) -> float:
-    """Part of a step between two motions that closes the film of the rigid surfaces by `SHARE`, 1 if none does.
+    """Part of a step between two motions that closes the gap of rigid surfaces by `SHARE`; at most 1.
 
     Gaps of a bore with profiles are linear in the motion.
     """
@@ -338,20 +345,20 @@ def allowed_part(bore: BoreGap, before: np.ndarray, after: np.ndarray) -> float:
 
 
 def _allowed_towards(other: np.ndarray, before: np.ndarray, after: np.ndarray, levers: np.ndarray) -> float:
-    """Part of a step between two motions that goes half of the way to the velocities of a third one, 1 if none does."""
+    """Part of a step between two motions that goes half of the way to the velocities of a third one; at most 1."""
     way, step = levers * (other - before)[4:8], levers * (after - before)[4:8]
     half, along = 0.5 * float(way @ way), float(way @ step)
     return half / along if along > half else 1.0
 
 
 def state_of(mbs: exu.MainSystem) -> list[np.ndarray]:
-    """Coordinates of second order, velocities, accelerations and multipliers now, as Exudyn holds them: not copied."""
+    """Views of Exudyn's present second-order coordinates, velocities, accelerations and multipliers, not copies."""
     state = mbs.systemData.GetSystemStateDict(CURRENT, True)
     return [state[name] for name in ("ODE2Coords", "ODE2Coords_t", "ODE2Coords_tt", "AECoords")]
 
 
 class ForceTolerance:
-    """Sets the tolerances of a running solver, which are its own: settings stay.
+    """Tolerances of Newton's method, set in a running solver; the user's settings are not changed.
 
     Parameters
     ----------
@@ -404,7 +411,7 @@ class ForceTolerance:
         solver.newton.relativeTolerance = self.relative * max(part, SMALL)
 
     def _forces(self) -> float:
-        """Norm of the forces of all films that there were at their last states, N."""
+        """Norm of the forces of all films at their last evaluations, N."""
         trials = [film.last for film in self.films]
         known = [trial for trial in trials if trial is not None and trial.status == Status.CONVERGED]
         return math.hypot(*(force for trial in known for force in trial.found.wrench[:3].tolist()))

@@ -1,8 +1,9 @@
-"""Runs that end when the orbits of all joints have closed, and how far a run is, for its line of progress.
+"""Runs that end when the orbits of all joints have closed, and progress lines of runs.
 
-A cycle is compared with the one before at the same phases. What two cycles in a row differ by is not yet how far the
-last one is from the limit: differences d_1, d_2, ... that shrink by a factor q = d_k / d_(k-1) leave d q / (1 - q),
-99 times the difference where a film warms up by 1 % of the rest in a cycle. So a run goes on until both are small.
+A cycle is compared with the one before at the same phases. The difference of two successive cycles is smaller than the
+difference from the limit: if differences d_1, d_2, ... shrink by a factor q = d_k / d_(k-1), the remaining difference
+is d q / (1 - q). For a film whose temperature approaches its limit by 1 % per cycle, it is 99 times the last
+difference. So a run continues until both are small.
 """
 
 from __future__ import annotations
@@ -26,9 +27,10 @@ from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.progress import Progress, is_shown
 from exudyn_ehd.status import POSITIVE, ROUNDING, Checked, InputError, RunError, require_number
 
-# Largest number of differences that may be left, also of those that do not shrink: rounding never does.
+# Upper bound of the remaining difference over the last one, also for differences that do not shrink, such as round-off.
+# Larger: runs with slow changes last longer.
 MOST_LEFT = 100.0
-# Rise of the temperature from which on its changes count as shares of it, K.
+# Lower bound, K, of the temperature rise over which changes of the temperature are measured.
 SMALLEST_RISE = 1.0
 
 
@@ -114,7 +116,7 @@ class LastCycle:
 
 
 class Closing:
-    """Function after a step of Exudyn that ends a run whose orbits have closed.
+    """User function after a step that ends a run whose orbits have closed.
 
     Parameters
     ----------
@@ -180,12 +182,12 @@ class Closing:
         self.changes.append(change)
 
     def last_cycle(self, mbs: exu.MainSystem) -> LastCycle:
-        """The cycle that has closed, behind the run.
+        """Return the last cycle, after the run.
 
         Raises
         ------
         RunError
-            If none has.
+            If the orbits have not closed.
         """
         time = mbs.systemData.GetTime()
         self.look(mbs, time, complete=True)
@@ -211,7 +213,7 @@ class Closing:
 
 
 def _change(history: JointHistory, begin: float, end: float, period: float) -> float:
-    """Largest change of an orbit from the cycle before to that which ends at ``end``."""
+    """Largest change of an orbit from the previous cycle to the cycle that ends at ``end``."""
     last = history.between(end - period, end)
     if last.time.size < 2:
         return math.inf
@@ -234,7 +236,7 @@ def _change(history: JointHistory, begin: float, end: float, period: float) -> f
 
 @contextmanager
 def run_progress(mbs: exu.MainSystem, settings: exu.SimulationSettings, joints: Sequence[Joint]) -> Iterator[None]:
-    """Show the progress of the run within, unless Exudyn's own does; the user's function comes back then."""
+    """Context that shows the progress of a run, unless Exudyn shows it; user functions are restored at its end."""
     if not is_shown() or settings.timeIntegration.verboseMode > 0:
         yield
         return
@@ -257,6 +259,6 @@ def run_progress(mbs: exu.MainSystem, settings: exu.SimulationSettings, joints: 
 
 
 def _worst(joints: Sequence[Joint]) -> str:
-    """The thinnest film, in words."""
+    """Text about the thinnest film."""
     gap, name = min(((joint.element.steps.record.thinnest, joint.name) for joint in joints), default=(math.inf, ""))
     return f", minimum film thickness {shown('length', gap)} in '{name}'" if math.isfinite(gap) else ""

@@ -1,6 +1,6 @@
-"""States from which runs start: one kept in memory or as a file, with the films' memory, or an equilibrium.
+"""States from which runs start: stored states with the films' memory, in memory or in a file, and equilibria.
 
-An equilibrium is a consistent start: the journal placed where its film carries a steady load.
+An equilibrium is a consistent start: the journal is placed at the position in which its film carries a steady load.
 """
 
 from __future__ import annotations
@@ -189,7 +189,10 @@ _WHERE = "LubricatedJoint.place_in_equilibrium"
 def equilibrium_task(
     where: str, journal: Side, subject: str, motion: np.ndarray, load: Sequence[float] | np.ndarray, speed: float | None
 ) -> tuple[NodeSide, tuple[float, float], float]:
-    """A journal that can be placed, the load (2,) on it and its speed, checked; its motion (10,) has the default."""
+    """Check the arguments of a placement: return the journal, the load (2,) on it and its speed.
+
+    The default of the speed is that of the motion (10,).
+    """
     if not isinstance(journal, NodeSide) or not journal.nodes:
         raise InputError(
             f"{where}: the journal of {subject} must be a rigid body or node that moves; place other bodies by a "
@@ -213,12 +216,12 @@ def shift_journal(
     position: np.ndarray,
     motion: np.ndarray,
 ) -> None:
-    """Bring a journal of a motion (10,) in a frame (3, 3) to a position (2,) and to rest across the axis there.
+    """Move a journal with a motion (10,) in a frame (3, 3) to a position (2,), without a velocity across the axis.
 
     ``state``: coordinates and rates of the system, changed in place.
     """
     places = np.array(mbs.systemData.GetNodeLTGODE2(int(journal.nodes[0])))[: rigid_nodes.translations(journal.kind)]
-    # the journal's axis keeps its place in the bearing: what it moved against it is taken off its velocity
+    # the position is changed, and the velocity relative to the bearing is subtracted
     for values, change in zip(state, (position - motion[:2], -motion[4:6]), strict=True):
         values[places] += (frame[:, :2] @ change)[: places.size]
 

@@ -1,7 +1,7 @@
-"""Exudyn's solvers with this package's errors, and runs that go on from a stored state.
+"""Exudyn's solvers with this package's errors, and runs that continue from a stored state.
 
-Initial velocities: an ideal joint leaves a body one velocity. A film takes any, and stops what does not fit within the
-clearance, with forces that nobody meant: journals are thrown across their bores at the start of a run. Exudyn does not
+Initial velocities: an ideal joint allows one velocity of a body. A film allows any velocity, and stops a velocity that
+does not fit within the clearance, by large forces: the journal crosses its bore at the start of a run. Exudyn does not
 make initial velocities consistent.
 """
 
@@ -28,17 +28,18 @@ from exudyn_ehd.coupling.run.step_size import steps_by_error
 from exudyn_ehd.status import EHDError, InputError, PlausibilityWarning, RunError, require_type, warn_user
 
 JOINTS = "lubricatedJoints"
-# Steps in which a journal crosses the clearance. Below one nothing of the impact is resolved; below the first it is
-# hardly, which is told of a journal that moves faster than the second times clearance x spin, a hundred times as fast
-# as it orbits. Larger numbers of steps, and a smaller ratio, tell of more runs.
+# Limits of a warning about initial velocities: number of steps in which a journal crosses the clearance, below which
+# the impact is hardly resolved; velocity over clearance times spin, which is a hundred times that of an orbit. A larger
+# number of steps, and a smaller ratio: more warnings.
 FEW_STEPS, FASTER = 10.0, 100.0
 _IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
 
 
 def register_joint(mbs: exu.MainSystem, make: Callable[[exu.MainSystem], Joint]) -> None:
-    """Let a system know a joint by a function of the system that makes its handle.
+    """Register a joint in a system, by a function that makes its handle from the system.
 
-    The handle itself would keep the system alive for ever: Python can't see that the system's variables refer to it.
+    The handle itself would keep the system alive for ever, because Python cannot see the references of the system's
+    variables.
     """
     mbs.variables.setdefault(JOINTS, []).append(make)
 
@@ -55,7 +56,7 @@ def joints_of(mbs: exu.MainSystem) -> list[Joint]:
 
 
 def require_new(where: str, mbs: exu.MainSystem, name: str) -> None:
-    """Refuse, in the name of ``where``, a name that another lubricated joint of the system has."""
+    """Raise `InputError`, in the name of ``where``, for a name that another lubricated joint of the system has."""
     if not isinstance(name, str):
         raise InputError(f"{where}.name must be a str, got {name!r}.")
     if name in {joint.name for joint in joints_of(mbs)}:
@@ -66,7 +67,7 @@ def require_new(where: str, mbs: exu.MainSystem, name: str) -> None:
 
 
 def require_run(where: str, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> None:
-    """Refuse what is no system or no settings, and a system of which items were deleted that a joint was made on."""
+    """Raise `InputError` for a wrong system or settings, and for a system with deleted items of a joint."""
     require_system(where, mbs)
     require_settings(where, settings)
     for joint in joints_of(mbs):
@@ -191,7 +192,7 @@ def SolveDynamic(
             start = StartGuess([joint.element for joint in joints], simulationSettings)
             around.enter_context(hooked(mbs, "PreNewtonResidual", start.begin))
             around.enter_context(hooked(mbs, "PostNewton", start.go_on))
-        # films ask the stored solver for step size, rule and whether it runs
+        # films read step size, integration rule and state from the stored solver
         good = bool(mbs.SolveDynamic(simulationSettings, **options | {"storeSolver": True}))
     return good if watch is None else watch.last_cycle(mbs)
 
@@ -238,7 +239,7 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
 
 
 def _refuse_inactive(mbs: exu.MainSystem) -> None:
-    """Name the joint that Exudyn's explicit solvers end at by its number alone."""
+    """Raise an error that names an inactive joint, for which Exudyn's explicit solvers give only a number."""
     for number, data in objects_of(mbs):
         if "Joint" in data["objectType"] and not data.get("activeConnector", True):
             raise InputError(
@@ -305,7 +306,7 @@ def own_errors(mbs: exu.MainSystem, where: str) -> Iterator[None]:
             raise KeyboardInterrupt(_kept(mbs)) from error
         if cause is not error:
             raise
-        # what Exudyn refuses it names; only its solvers' errors are bare
+        # Exudyn's input errors have a clear message; only errors of its solvers need more text
         if not isinstance(error, exu.SolverError):
             raise RunError(f"{where}: {str(error).strip()} {_kept(mbs)}") from error
         raise RunError(f"{where}: {_story(mbs, static=where == 'SolveStatic')}") from error
@@ -361,9 +362,9 @@ def running(
     control: StepControl | None,
     threads: int | None,
 ) -> Iterator[None]:
-    """Let a solver run within, with this package's errors.
+    """Context for the run of a solver, with this package's errors.
 
-    Steps are chosen as by ``control``, those without a film refused, and progress is shown.
+    Steps are chosen by ``control``, steps without a valid film are rejected, and progress is shown.
     """
     if threads not in (1, None):
         raise InputError(
@@ -384,7 +385,7 @@ def running(
 
 @contextmanager
 def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: SystemState) -> Iterator[None]:
-    """Put a state into a system for the run within; user functions and settings are given back afterwards."""
+    """Context that sets a state in a system for a run; user functions and settings are restored at its end."""
     require_system("SolveDynamic.restart", mbs, assembled=True)
     state.put_into(mbs, joints_of(mbs))
     integration = settings.timeIntegration
@@ -418,7 +419,7 @@ def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: Sys
 def warn_of_misfit(states: Iterable[tuple[str, np.ndarray, JournalBearing]], step: float) -> None:
     """Warn of journals that cross their bores at the start of a run with steps of ``step`` s.
 
-    ``states``: names of the joints, their motions (10,) there, and their bearings.
+    ``states``: names of the joints, their initial motions (10,), and their bearings.
     """
     told: list[tuple[float, str]] = []
     for name, motion, bearing in states:

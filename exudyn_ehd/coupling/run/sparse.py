@@ -1,6 +1,6 @@
-"""Exudyn's implicit integrator with an own sparse factorisation: `SolveDynamicSparse`.
+"""Exudyn's implicit integrator with a sparse factorisation of this package: `SolveDynamicSparse`.
 
-Exudyn keeps the time stepping (generalized-alpha predictor, step control, output, sensors); its Newton loop is replaced
+Exudyn does the time stepping (generalized-alpha predictor, step control, output, sensors); its Newton loop is replaced
 through ``MainSolverImplicitSecondOrder.SetUserFunctionNewton``. The unknowns are increments d of displacements and
 Lagrange multipliers; residual and Jacobian arrive scaled by beta h^2:
 
@@ -8,28 +8,29 @@ Lagrange multipliers; residual and Jacobian arrive scaled by beta h^2:
     [r C                              0  ] [beta h^2 d_lambda ] = [g],      f = (1 - alpha_f) / (1 - alpha_m),
 
 with r = gamma / (beta h) in the rows of constraints that are solved for velocities and 1 in others, after which
-q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off Exudyn 1.13.6's own matrices and steps,
-and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. The factor
-is kept over iterations and steps until convergence slows down (modified Newton).
+q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2). These formulas were derived from the matrices and steps of
+Exudyn 1.13.6; tests compare whole runs. The Jacobian is assembled from the objects' Jacobians. The factor is reused
+over iterations and steps until convergence slows down (modified Newton).
 
-Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product
-with their exact tangent costs one film solve. With J0 everything else and F the films, d = J0^-1 (r + z), where z, not
-zero at the films' coordinates alone, solves ``(1 + F J0^-1) z = -F J0^-1 r`` by GMRES to a thousandth of r; the bush
-deflects little under a film's short waves, so that some seven products do. Newton then takes the iterations it takes
-with a full Jacobian, and the factor of the bush alone, sparse and hardly changing, lasts. What is beside the bushes, as
-a journal that turns, is small and has its factor anew in every iteration where only films join the two:
-its factor is sparse of the meshes, dense of all the rest. The matrix is put together in `system_matrix`.
+Films on nodal bushes are operators: their dense blocks over the bore would fill the factor, while a product with their
+exact tangent costs one film solve. With F for the films and J0 for the rest, d = J0^-1 (r + z), where z solves
+``(1 + F J0^-1) z = -F J0^-1 r`` by GMRES to a thousandth of r and is zero except at the films' coordinates. The bush
+deflects little under short waves of the film, so that some seven products suffice. Newton's method then needs as many
+iterations as with a full Jacobian, and the sparse factor of the bush, which hardly changes, can be reused. The other
+coordinates, such as those of a turning journal, are few. If they are coupled to the bush by films only, they are
+refactored in every iteration: sparse factors of the meshes, dense ones of the rest. The matrix is assembled in
+`system_matrix`.
 
 With the coordinates b of meshes and r of all the rest, the iteration matrix is solved by
 
     W = J_bb^-1 J_br,    S = J_rr - J_rb W,
     y = J_bb^-1 f_b,   x_r = S^-1 (f_r - J_rb y),   x_b = y - W x_r.
 
-Meshes hardly change, bodies that turn do in every step. Where a mesh meets the rest in films only, W = 0 and S = J_rr,
-which a Newton iteration can have anew while the factor of the meshes lasts.
+Matrices of meshes hardly change, those of turning bodies change in every step. If a mesh is coupled to the rest by
+films only, W = 0 and S = J_rr, which is refactored in each Newton iteration while the factor of the meshes is reused.
 
-Additive coordinates only: Lie group nodes and first-order coordinates are refused, and so is what Exudyn knows about a
-Jacobian and does not tell: sliding joints, `GeneralContact`, loads that depend on coordinates.
+Only additive coordinates are supported, no Lie group nodes and first-order coordinates. Also not supported are items
+whose Jacobian Exudyn does not return: sliding joints, `GeneralContact`, loads that depend on coordinates.
 """
 
 from __future__ import annotations
@@ -57,10 +58,9 @@ from exudyn_ehd.status import POSITIVE, Checked, InputError, require_integer
 
 # Exudyn's stubs lack the self of its solvers' methods.
 DynamicSolver: TypeAlias = Any
-# Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
-# products.
+# Relative tolerance of the linear equations with films in a step of Newton's method, and largest number of products.
 FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
-# Coordinates and multipliers beside the meshes at most, which are solved for as dense.
+# Largest number of coordinates and multipliers outside of the meshes for which a dense factor is used.
 LARGEST_REST = 200
 
 
@@ -129,7 +129,7 @@ class SparseRun:
     factor_bytes: int = 0
 
     def report(self) -> str:
-        """Return one line for people."""
+        """Return a summary of one line."""
         steps = max(self.steps, 1)
         return (
             f"{self.steps} steps in {self.seconds:.2f} s = {1e3 * self.seconds / steps:.1f} ms per step, "
@@ -156,7 +156,7 @@ def SolveDynamicSparse(
     Parameters
     ----------
     mbs : exudyn.MainSystem
-        Assembled if it is not.
+        The system; it is assembled if it is not yet.
     simulationSettings : exudyn.SimulationSettings or None, default None
         Tolerances, steps, spectral radius, Newmark and index 2 are taken from ``timeIntegration``. None: Exudyn's
         defaults; use `ConfigureSolver`.
@@ -205,13 +205,13 @@ def SolveDynamicSparse(
         run=run,
     )
     solver: DynamicSolver = exu.MainSolverImplicitSecondOrder()
-    # the loop knows the films, and these the solver: a circle that Python can't see would keep the system alive
+    # weak reference: loop, films and solver refer to each other, and Python cannot see this cycle
     solver.SetUserFunctionNewton(mbs, weakref.proxy(loop))
     # where Exudyn's own SolveDynamic leaves its solver; objects of a model look there for the one at work
     mbs.sys["dynamicSolver"] = solver
     began = time.perf_counter()
     chosen = settings.linearSolver.solverType
-    # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
+    # initial accelerations come from Exudyn's solver, which must not use a dense matrix
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     try:
         with running("SolveDynamicSparse", mbs, settings, stepControl, threads):
@@ -225,7 +225,7 @@ def SolveDynamicSparse(
 
 
 def _require_offered(integration: Any) -> None:
-    """Refuse settings of Exudyn's Newton method that are not followed here."""
+    """Raise `InputError` for settings of Exudyn's Newton method that are not supported here."""
     for name, value, only in (
         ("newton.active", integration.newton.active, True),
         ("newton.residualMode", integration.newton.residualMode, 0),
@@ -245,9 +245,9 @@ class SystemFactor:
     ----------
     system : csc_matrix
     mesh : (n,) array of bool
-        Coordinates of meshes; one factor of all where there are none, or much beside them.
+        Coordinates of meshes. Without meshes, or with many other coordinates, there is one factor of the whole matrix.
     pivoting : float
-        As in `sparse_factor`, of that one.
+        As in `sparse_factor`, for the factor of the whole matrix.
 
     Raises
     ------
@@ -272,7 +272,7 @@ class SystemFactor:
         self.renew_rest(system)
 
     def renew_rest(self, system: csc_matrix) -> None:
-        """Factorise what is beside the meshes."""
+        """Refactor the coordinates outside of the meshes."""
         own = system[self.rest][:, self.rest].toarray() - self.across @ self.moved
         with warnings.catch_warnings():
             warnings.simplefilter("error", LinAlgWarning)
@@ -309,13 +309,13 @@ class _SparseNewton:
 
     def __call__(self, solver: DynamicSolver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         newton, data, turn = settings.timeIntegration.newton, mbs.systemData, solver.it.discontinuousIteration
-        # Exudyn's Newton method forgets the multipliers of the step before, too
+        # Exudyn's Newton method resets the multipliers at the start of a step, too
         state_of(mbs)[3][:] = 0.0
         solver.ComputeNewtonUpdate(mbs, settings, True)
         self.guess(mbs, data.GetTime(), 0, turn)
         error = first = solver.ComputeNewtonResidual(mbs, settings)
         step, self.step_size = self.step_size, solver.it.currentStepSize
-        # in a further turn a contact has opened or closed
+        # in a further pass a contact has opened or closed
         if turn > 0 or step != self.step_size or self.excess >= self.reuse.worth:
             self.factor = None
         age, renewable = 0, True
@@ -340,7 +340,7 @@ class _SparseNewton:
                 return True
             if iteration == 1 and newton.adaptInitialResidual:
                 first = max(first, error)
-            # the films, whose tangents are new in every iteration, slow iterations too: one new factor a step
+            # films with new tangents in every iteration also slow convergence: one new factor a step
             if error > self.reuse.contractivity * previous and (renewable or not self.matrix.films):
                 self.factor = None
         self.factor = None
@@ -348,9 +348,9 @@ class _SparseNewton:
         return False
 
     def _factorise(self, solver: DynamicSolver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
-        """Make the factor where there is none, else renew what is beside the meshes where only films join the two.
+        """Make the factor if there is none; else refactor the rest, if only films couple it to the meshes.
 
-        Return False if the matrix is singular, upon which the step is rejected.
+        Return False if the matrix is singular, so that the step is rejected.
         """
         kept = self.factor
         if kept is not None and (kept.coupled or not self.matrix.films):
@@ -374,7 +374,7 @@ class _SparseNewton:
         return True
 
     def _solve(self, solver: DynamicSolver, mbs: exu.MainSystem, residual: np.ndarray) -> np.ndarray:
-        """Newton's step: with the factor, or with it and the films' operators."""
+        """Solve for Newton's step with the factor and, if there are any, the films' operators."""
         assert self.factor is not None
         films = self.matrix.film_operators(mbs, solver)
         factor, d = self.factor, self.factor.solve(residual)

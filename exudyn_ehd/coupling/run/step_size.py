@@ -1,19 +1,19 @@
 """Steps chosen by the error that they make in the films.
 
-Behind Newton's method of a step, `exudyn_ehd.joint.step_error.next_error` says for every joint what the step has missed
-over what it may miss. Far too much, and Exudyn repeats the step by half of it or more (its function after Newton's
-method recommends the size); else the function after the step sets the size of the next one. What a step misses grows
-with the cube of its size, and what it may miss with its size: a step's demand is the root of the quotient over its
-size, and the next one follows the largest demand of late.
+After Newton's method of a step, `exudyn_ehd.joint.step_error.next_error` returns for every joint the local error over
+the allowed one. If it is far too large, Exudyn repeats the step with half its size or less (the user function after
+Newton's method recommends the size). Otherwise the user function after the step sets the size of the next one. The
+local error grows with the cube of the step size, the allowed error in proportion to it. So the demand of a step is the
+root of their ratio over its size, and the next size follows from the largest recent demand.
 
-A step in which a load jumps is repeated as long as the jump would make more than what earlier errors leave of the error
-that is asked for, or more than half of it where they leave less. Where the load is a function of time its jump is found
-within the step; the integration takes jumps to be in the middle of their step, and the next step, or the one after it,
-has the jump there. So a pulse within a step is met, too. Jumps of other loads count as at an end of the step, which is
-halved.
+A step in which a load jumps is repeated as long as the error by the jump exceeds a limit: the requested error minus
+earlier errors, but at least half of the requested error. If the load is a function of time, its jump is found within
+the step. The integration assumes jumps in the middle of their step, so that steps are chosen with the jump in the
+middle of the next one, or of the one after it. So a pulse within a step is found, too. Jumps of other loads count as
+lying at an end of the step, which is halved.
 
-A change of the size costs an error of its own: velocities carry an error of h^2 along, that of the size before, and go
-over to the new one within a step or two. So sizes grow by a tenth at a time, and smaller changes are left out.
+A change of the step size causes an error: velocities have an error of h^2 with the previous size, which adapts to the
+new size within a step or two. So sizes grow by a tenth at a time, and smaller changes are omitted.
 """
 
 from __future__ import annotations
@@ -33,17 +33,18 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.step_error import REFUSED, SMALLEST_GAP_SHARE, FilmLoad, next_error, no_error
 from exudyn_ehd.status import SMALL, Status
 
-# First and largest step, in steps of the settings.
+# First and largest step, over the step of the settings.
 FIRST, LARGEST = 0.125, 4.0
-# Changes of the size at once: the smallest factor, the largest, and below which none is worth it.
+# Factors of the size from step to step: the smallest and the largest one; demanded factor above which the size is not
+# reduced.
 SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
-# Part of its demand that a step hands on.
+# Factor by which the demand of earlier steps decays per step. Larger: steps grow later after a difficult one.
 KEPT = 0.94
 # Allowed error of steps over the error asked for: errors of successive steps cancel in part. Larger: longer steps.
 CANCELLED = 1.5
-# Least share of a step, at its beginning and its end, in which none ends that is repeated for a jump in its middle.
+# A step that is repeated for a jump does not end in this share of it at its beginning and at its end.
 END_OF_STEP = 0.25
-# Least share of the error asked for that a jump may make beside the error that is left from earlier ones.
+# Least allowed error of a jump, over the requested error. Larger: fewer repeated steps, larger errors.
 LEAST_OF_ERROR = 0.5
 
 
@@ -51,11 +52,11 @@ _StepState: TypeAlias = tuple[float, np.ndarray, tuple[float, float], FilmLoad, 
 
 
 class _JointError:
-    """The error of one joint: at the start of the step, and behind the one at hand."""
+    """Errors of one joint: at the start of the present step, and after it."""
 
     def __init__(self, film: FilmElement, error: float) -> None:
         self.film, self.error = film, error
-        # start and size of the last step tried, and what a jump in it may make
+        # start and size of the last step tried, and the possible error by a jump in it
         self.jump = (math.nan, 0.0, 0.0)
         self.lags = isinstance(getattr(film.model.bearing, "bush", None), ElasticLiner)
         self.states: list[_StepState] = []
@@ -95,7 +96,7 @@ class _JointError:
             asked = max(asked - moved[3], LEAST_OF_ERROR * asked)
             if jump > asked:
                 most = step * min(1.0 - END_OF_STEP, max(END_OF_STEP, math.sqrt(asked / jump)))
-                # a whole number of steps and a half to the jump, so that the last one has it in its middle
+                # such that the jump is n + 1/2 steps away and lies in the middle of the last step
                 centred = (place - start) / (max(1.0, math.ceil((place - start) / most + 0.5)) - 0.5)
                 self.wanted = max(centred, min(most, 0.5 * step * asked / jump))
                 return max(used, REFUSED)
@@ -103,17 +104,18 @@ class _JointError:
         return max(used, REFUSED) if less else used
 
     def _asks_for_less(self, start: float, step: float, error: float, allowed: float) -> bool:
-        """Return whether a shorter step is worth its while for a jump that may make an ``error``.
+        """Return whether a shorter step would reduce the possible ``error`` of a jump.
 
-        In half a step a jump makes half the error at most. Loads that ring grow as 1 / h and make the same error: a
-        step is not repeated again where the error falls by less than the root of what the step does.
+        In half a step the error of a jump is at most half. Loads that ring grow as 1 / h, with the same error in
+        shorter steps. So a step is not repeated again if the error has fallen by less than the root of the step's
+        ratio.
         """
         (last_start, last_step, last_error), self.jump = self.jump, (start, step, error)
         rings = start == last_start and error > last_error * math.sqrt(step / last_step)
         return error > allowed and not rings
 
     def accept(self) -> None:
-        """Go on behind the step at hand."""
+        """Continue after the present step, which is accepted."""
         self.before = self.after
         # without a film there is no error, and the next ones are known two steps later
         self.states = [] if self.now is None else [*self.states[-4:], self.now]
@@ -128,9 +130,9 @@ class StepSize:
     films : sequence of FilmElement
         Elements of all joints.
     error : float
-        Share of the minimum film thickness.
+        Requested error of the gap over the minimum film thickness.
     sensors : bool
-        Whether the system has sensors.
+        True if the system has sensors.
     """
 
     def __init__(
@@ -156,7 +158,7 @@ class StepSize:
         self.used: float | None = None
 
     def look(self, own: Any, mbs: exu.MainSystem, time: float) -> list[float]:
-        """User function after Newton's method and the user's own: error, and step size to repeat the step with."""
+        """User function after Newton's method, which first calls the user's own: return error and recommended step size."""
         error, wanted = own(mbs, time)
         known = [used for joint in self.joints if (used := joint.used(mbs, time)) is not None]
         self.used = max(known, default=None)
@@ -168,7 +170,7 @@ class StepSize:
         return [max(error, self.beyond), min(step, wanted) if wanted >= 0.0 else step]
 
     def choose(self, own: Any, mbs: exu.MainSystem, time: float) -> bool:
-        """User function after the user's own, behind an accepted step and before the first one: sets the next size."""
+        """User function after an accepted step and before the first one: set the next size, after the user's own."""
         goes_on = bool(own(mbs, time))
         if not math.isnan(self.time):
             for joint in self.joints:
@@ -180,7 +182,7 @@ class StepSize:
         return goes_on
 
     def _adapt(self, step: float) -> None:
-        """The size to go on with, behind an accepted step."""
+        """Set the size and the demand after an accepted step."""
         if step < (1.0 - SMALL) * self.planned:
             # repeated, here or by Exudyn
             self.size, self.demand = step, max(self.demand, 1.0 / step)
@@ -192,7 +194,7 @@ class StepSize:
                 self.size *= min(GROW, max(SHRINK, factor))
 
     def _landing(self, time: float) -> float:
-        """The next step, which ends at the next time that is asked for or is at most half the way there."""
+        """Next step, which ends at the next output time or goes at most half of the way to it."""
         stops = [self.end]
         for period in self.periods:
             if period > SMALL * self.usual:
@@ -207,7 +209,7 @@ class StepSize:
 def steps_by_error(
     mbs: exu.MainSystem, settings: exu.SimulationSettings, films: Sequence[FilmElement], error: float
 ) -> Iterator[None]:
-    """Choose the steps of the run within; the user's functions and settings come back then."""
+    """Context in which the steps of a run are chosen by error; user functions and settings are restored at its end."""
     control = StepSize(settings, films, error, sensors=mbs.systemData.NumberOfSensors() > 0)
     run = settings.timeIntegration
     kept = run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize

@@ -1,4 +1,4 @@
-"""The iteration matrix of a system, assembled object by object, for `exudyn_ehd.coupling.run.sparse`."""
+"""Iteration matrix of a system, assembled object by object, for `exudyn_ehd.coupling.run.sparse`."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from exudyn_ehd.coupling.items.bush_equations import BushEquations
 from exudyn_ehd.coupling.items.objects import as_sparse, force_owner, hidden_mass, is_hidden
 from exudyn_ehd.status import InputError
 
-# Bodies of one node without stiffness; velocity forces of theirs are left out of the matrix, as in Exudyn.
+# Bodies of one node without stiffness, whose velocity forces are omitted in the matrix, as in Exudyn.
 _SIMPLE = ("Ground", "RigidBody", "RigidBody2D", "MassPoint", "MassPoint2D", "Mass1D", "RotationalMass1D")
-# Constraints whose equations hold no coordinates of their own besides multipliers: what Exudyn returns is all there is.
+# Constraints without coordinates except multipliers, for which Exudyn returns all terms of the Jacobian.
 _CONSTRAINTS = (
     "ConnectorCoordinate",
     "ConnectorCoordinateVector",
@@ -68,11 +68,11 @@ class SystemMatrix:
     parts : list
         One function (mbs, Factors) -> list of (rows, columns, values) per object.
     meshes : list
-        The same of nodal bushes.
+        The same for nodal bushes.
     mesh : (n,) array of bool
-        Coordinates and equations that are those of bushes' nodes.
+        True for coordinates and equations of bushes' nodes.
     films : list
-        Films on nodal bushes, and the places of their coordinates.
+        Films on nodal bushes, and the indices of their coordinates.
     """
 
     def __init__(self, mbs: exu.MainSystem) -> None:

@@ -1,4 +1,4 @@
-"""Audit of a bearing: which effects mattered in its films, which were left out, and which take time without need.
+"""Audit of a bearing: effects that mattered in its films, omitted ones that would have, and needless ones.
 
 Rows of the flow and of numbers: squeeze, cavities, vortices, turbulence, inertia; grid, time step, ringing.
 """
@@ -26,16 +26,17 @@ from exudyn_ehd.joint.balance.resolution import Resolution
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.step_error import enough_steps
 
-# Grids this many times finer than needed cost time for nothing.
+# Intervals across the peak over the needed ones from which on a coarser grid is advised. Larger: fewer such advices.
 TOO_FINE = 6.0
-# Grids that are so much finer than needed, and not coarser than the default, are not compared with finer ones.
+# Intervals across the peak over the needed ones from which on a grid, if not coarser than the default, passes without
+# comparison with a finer one. Larger: more comparisons, each of which takes film solves.
 SURELY_FINE = 2.0
-# Intervals along z across a peak that its load needs: 1 % of it.
+# Intervals along z across a peak with which the load is accurate to 1 %.
 NEEDED_ALONG = 3.0
-# Film thicknesses across the last interval along z: the pressure there rises by int dz / h^3, which the vertices at
-# its ends know to 2 % of the film thickness on the end up to here.
+# Largest ratio of the film thicknesses at both ends of the last interval along z. The pressure rises there by
+# int dz / h^3, which the two vertices give with an error of 2 % of the end's film thickness up to this ratio.
 NARROWS = 1.6
-# Option, multiple and least number of a grid that is advised.
+# Advised grids: option, number of which sizes are multiples, least size.
 SIZES = {"grid around": ("n_theta", 8, 48), "grid along": ("n_z", 2, 6)}
 
 
@@ -54,7 +55,7 @@ def misalignment(case: Case) -> Finding:
 
 
 def squeeze(case: Case) -> Finding:
-    """Squeeze against wedge."""
+    """Share of the squeeze among squeeze and wedge."""
     is_on = case.bearing.squeeze
     return judged(
         case,
@@ -68,7 +69,7 @@ def squeeze(case: Case) -> Finding:
 
 
 def cavitation(case: Case) -> Finding:
-    """Cavitated share of the surface, or tension in a film that never breaks."""
+    """Cavitated share of the surface, or tension in a film without cavitation."""
     if not np.isinf(case.bearing.cavitation.cavity_pressure):
         return judged(case, "cavitation", *_cavitated(case), True)
     return judged(
@@ -87,7 +88,7 @@ def _cavitated(case: Case) -> tuple[str, float]:
 
 
 def rupture(case: Case) -> Finding | None:
-    """Half Sommerfeld's rupture against Reynolds' condition."""
+    """Error of the half Sommerfeld rupture, compared with Reynolds' condition; None for other closures."""
     if not case.bearing.cavitation.clips:
         return None
     advice = "the film breaks where its pressure still falls: cavitation=SwiftStieber() keeps the flow there."
@@ -95,7 +96,7 @@ def rupture(case: Case) -> Finding | None:
 
 
 def mass_conservation(case: Case) -> Finding | None:
-    """Oil content and pressure of cavities: against a film whose cavities keep their oil."""
+    """Effect of conserving the oil of cavities; None for a film without cavitation."""
     closure, effect = case.bearing.cavitation, "mass conservation"
     if np.isinf(closure.cavity_pressure):
         return None
@@ -160,14 +161,14 @@ def inertia(case: Case) -> Finding:
 
 
 def grid_columns(case: Case) -> Finding | None:
-    """Columns across the pressure peak; an impedance map has its error sampled when it is built."""
+    """Intervals around across the pressure peak; None for an impedance map, whose error is sampled when it is built."""
     worst = min(case.resolutions, key=lambda seen: seen.columns)
     text, across = "intervals across the peak at half its height", worst.columns
     return _grid(case, "grid around", text, across, worst, across, LIMITS["grid around"].value)
 
 
 def grid_rows(case: Case) -> Finding | None:
-    """Rows next to the end where the pressure peaks; the slices of a long bearing are no grid."""
+    """Growth of the film within the last interval along z; None for a long bearing, which has no grid along z."""
     if isinstance(case.bearing.film, LongBearing):
         return None
     worst, text = (
@@ -189,7 +190,10 @@ def _grid(
     needed: float,
     narrows: bool = False,
 ) -> Finding | None:
-    """Intervals ``across`` the peak against those that are ``needed``, and what twice as many change."""
+    """Finding about the intervals ``across`` the peak, of which ``needed`` suffice.
+
+    Unless the grid is surely fine, films with twice as many intervals are computed for comparison.
+    """
     film, (name, unit, fewest) = case.bearing.sized_film, SIZES[effect]
     if isinstance(film, ImpedanceMap):
         return None
@@ -210,7 +214,7 @@ def _grid(
     wanted = max(wanted, fewest)
     if across > TOO_FINE * needed and wanted < size:
         coarser = switches.refined(**sizes | {name: wanted})
-        # a flexible bore constricts its film within less than the pressure's peak
+        # a flexible bore has a constriction narrower than the pressure peak
         loss = None if case.bearing.bush is None else case.change(coarser)
         if loss is None or loss.size <= MATTERS:
             advice = f"finer than the pressure needs: {name}={wanted} would do."
@@ -219,7 +223,10 @@ def _grid(
 
 
 def supply_resolution(case: Case) -> Finding | None:
-    """Intervals on the narrowest area of supply, and what twice as many change; circumferential grooves have rows."""
+    """Intervals around on the narrowest supply area, and the change by a grid twice as fine.
+
+    None without such an area: circumferential grooves lie on rows of the grid.
+    """
     b, film = case.bearing, case.bearing.film
     areas = [area for area in b.supply if not isinstance(area, CircumferentialGroove)]
     if not areas or not isinstance(film, FiniteLength):
@@ -238,7 +245,7 @@ def supply_resolution(case: Case) -> Finding | None:
 
 
 def time_step(case: Case) -> Finding | None:
-    """Estimated error of the steps against the gap; None for a record that does not know it."""
+    """Estimated error of the gap by the time steps; None for a record without this estimate."""
     record = case.record
     if record is None or not np.any(np.isfinite(record.step_error)):
         return None
@@ -273,7 +280,7 @@ def ringing(case: Case) -> Finding | None:
     )
 
 
-# Function that finds what an audit says about an effect, None where there is nothing to say.
+# Function that returns the finding about one effect; None if the effect does not apply to the case.
 AuditRow = Callable[[Case], Finding | None]
 ROWS: Mapping[str, AuditRow] = {
     "misalignment": misalignment,
@@ -316,9 +323,9 @@ def audit_record(
 ) -> Audit:
     """Audit a bearing by the worst states of a record; arguments as for `Case`.
 
-    Films that remember are run again over up to 60 recorded steps before such a state.
+    Films with a memory are evaluated again over recorded steps before such a state: at least 60, if there are as many.
     """
-    # what faces do not go with may well act in the journal's film
+    # without the faces, which exclude options that an audit may try in the journal's film
     model = build_study_model(replace(bearing, thrust=None), 0.0)
     states = recorded_states(model, record)
     return audit_of(Case(model, states, record, liner=liner, faces=bearing.thrust, measure_time=measure_time))

@@ -1,9 +1,10 @@
-"""Subject of an audit: the audited films of a bearing, their numbers, and the changes by another description of it.
+"""Subject of an audit: films of a bearing, their numbers, and the changes by another description of the bearing.
 
-Changes are computed, not guessed. At a steady state the journal of the other bearing is moved to where its film carries
-the same load; minimum film thickness, peak pressure and loss are compared there, the load at the same position. The
-films of a record that remember are compared at the same motion with the same memory, where the peak is related to the
-load, and the minimum film thickness estimated from it: a film pressed together carries about 1 / h^2.
+Changes are computed from films. At a steady state a search finds the position at which the other bearing's film
+carries the same load. Minimum film thickness, peak pressure and loss are compared there; the load is compared at the
+first position. Films of a record with a memory are compared at the same motion with the same memory. The change of the
+peak is then divided by that of the load, and the minimum film thickness is estimated from the load: under squeeze a
+film carries about 1 / h^2.
 """
 
 from __future__ import annotations
@@ -40,9 +41,10 @@ from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.status import SMALL, FilmError, InputError, Status, require_type
 
-# From this change on an effect matters; below the second one nobody needs it.
+# Relative change above which an effect matters, and change below which an effect that is on is not needed. Smaller
+# values: more effects count as important, and fewer as needless.
 MATTERS, NOTHING = 0.03, 0.02
-# Most films of a search for the same load.
+# Largest number of films of a search for the same load. Smaller: more searches end without a film.
 MOST_FILMS = 60
 
 
@@ -82,20 +84,20 @@ class Change:
 
 
 class Case:
-    """Films of a journal bearing at some states; bearings that move otherwise have a subclass.
+    """Films of a journal bearing at some states; ball joints have a subclass.
 
     Parameters
     ----------
     model : BearingModel
     states : sequence of FilmState
     record : RecordedSteps, optional
-        Record that the states come from; it adds how often contacts acted, mean heating and the time step.
+        Record of the states. With it the audit also knows when contacts acted, the mean heating and the time step.
     liner : ElasticLiner, optional
         Liner whose elasticity is assessed, for bearings without one.
     faces : ThrustFaces, optional
-        Thrust faces in the record; the bearing is that of the journal's film alone.
+        Thrust faces of the recorded joint; ``model`` is without them.
     measure_time : bool
-        Measure the share of the time that every effect takes which is on and can be left out.
+        Measure the share of the computing time of each effect that is on and can be switched off.
 
     Attributes
     ----------
@@ -104,15 +106,15 @@ class Case:
         Numbers of the films, see `film_numbers`.
     resolutions : list of Resolution
     axes, entries : int
-        Components of the force that a film carries, and of a motion of rigid surfaces.
+        Numbers of components: of the film's force that are compared, and of a motion of rigid surfaces.
     tolerance : float
-        Unbalance over the load up to which two films carry the same one.
+        Unbalance over the load up to which two films carry the same load. Larger: less accurate changes.
     replays : bool
-        Whether films with a memory are those that the steps of a record lead to.
+        True: films with a memory get it from the steps of the record before their state.
     surface, steel : str
         Names of the surface around the film and of the deflecting steel, for messages.
     omitted : dict of str to str
-        Effects that no such bearing can have, with advice.
+        Advice by the name of an effect that such a bearing cannot have.
 
     Raises
     ------
@@ -166,7 +168,7 @@ class Case:
         return numbers, seen
 
     def build(self, bearing: JournalBearing) -> BearingModel:
-        """Model of another bearing, with the grid's start of this one."""
+        """Model of another bearing, whose grid starts at the same angle."""
         return build_study_model(bearing, float(self.model.grid.x[0]))
 
     def sources(self, motions: np.ndarray) -> Sources:
@@ -178,11 +180,11 @@ class Case:
         return np.abs(motions[:, 8])
 
     def turns(self, motions: np.ndarray) -> np.ndarray:
-        """Spin (n,) of motions (n, k) in whose turns steps are counted, rad/s."""
+        """Spin (n,) of motions (n, k), rad/s, by which steps per turn are counted."""
         return motions[:, 8]
 
     def own_numbers(self, evaluation: Evaluation) -> tuple[dict[str, float], Resolution]:
-        """Numbers of a film as by `film_numbers`, and the resolution of its pressure peak by the grid."""
+        """Numbers of a film as in `film_numbers`, and the resolution of its pressure peak by the grid."""
         return film_numbers(self.model, evaluation), resolution(evaluation.solved)
 
     def compared(self, evaluation: Evaluation) -> tuple[float, float, float]:
@@ -193,8 +195,8 @@ class Case:
     def steady(self, other: BearingModel, mine: FilmState) -> Callable[[np.ndarray], Evaluation]:
         """Return the function of a motion of rigid surfaces that evaluates the steady film of another bearing.
 
-        The temperature is held where both have the same: what else changes it is of second order; one that is a field
-        settles anew on another grid.
+        If both bearings have the same thermal option, the temperature of this one is kept: its change has an effect of
+        second order. A temperature field is computed anew for another grid.
         """
         if not (other.remembers or other.flexible):
             return other.evaluate
@@ -205,7 +207,7 @@ class Case:
                 return lambda motion: other.evaluate_steady(motion, History(temperature=held))
 
         def settled(motion: np.ndarray) -> Evaluation:
-            """Evaluate the film at its own temperature, which that of the film before helps to find."""
+            """Evaluate the film at its steady temperature; the initial guess is the previous film's temperature."""
             nonlocal near
             found = evaluate_at(other, motion, "audit", near)
             near = found.film.history
@@ -214,7 +216,7 @@ class Case:
         return settled
 
     def change(self, switch: Switch) -> Change | None:
-        """Worst change by a switch; None where no state could be compared."""
+        """Largest change by a switch over all states; None if no state could be compared."""
         own, record = self._own, self.record
         try:
             other = self.build(switch(own.bearing))
@@ -222,7 +224,7 @@ class Case:
             return None
         states: Sequence[FilmState] = self.states
         remembers = self.replays and record is not None and (other.remembers or own.remembers or own.needs_spin)
-        # without a memory of its own it takes that of this one
+        # a bearing that gains a memory of its oil, or has another grid, needs histories of its own
         gains = other.remembers_mass and not own.remembers_mass
         if record is not None and remembers and (gains or other.grid.shape != own.grid.shape):
             if other.flexible:  # tens of steps before every state, each a search for the bore's balance: seconds
@@ -249,26 +251,27 @@ class Case:
             share = max(float(np.linalg.norm(reached.wrench[: self.axes])) / size, 1e-12)
         else:
             if other.flexible and other.bearing.bush is b.bush and other.bearing.journal is b.journal:
-                other.evaluate(mine.motion, mine.history)  # the search for its bore's shape starts from this one's
+                other.evaluate(mine.motion, mine.history)  # start its search for the bore's shape at this one's shape
             share, reached = self._carrying(other, mine, force, size)
         if reached is None:
             return Change(load=share - 1.0, minimum_gap=math.nan, peak_pressure=math.nan, power_loss=math.nan)
         pairs = zip(self.compared(reached), own, strict=True)
         gap, peak, loss = (new / old if old > 0.0 else 1.0 for new, old in pairs)
-        if remembers:  # a step that can't be taken again elsewhere
+        if remembers:  # at the same motion, so estimated for the same load
             gap, peak = gap * math.sqrt(share), peak / share
         return Change(load=share - 1.0, minimum_gap=gap - 1.0, peak_pressure=peak - 1.0, power_loss=loss - 1.0)
 
     def _carrying(
         self, other: BearingModel, mine: FilmState, force: np.ndarray, size: float
     ) -> tuple[float, Evaluation | None]:
-        """Load of another bearing's film at a state over its own, and its film with the same force; nan, None without.
+        """Load of another bearing's film at a state over this bearing's load, and its film with the same force.
 
-        Newton's method for the place; a step is halved until it reaches a film nearer to the force.
+        Newton's method finds the position; a step is halved until the force is nearer to the wanted one. The load is
+        nan without a film at the first position, the film None if the search fails.
         """
         steady, k, b, motion = self.steady(other, mine), force.size, other.bearing, mine.motion[: self.entries].copy()
         is_soft, share = other.flexible or b.contact is not None or b.asperity is not None, math.nan
-        # from the centre the first step leads to the state's own place, or to a film on the way there
+        # the first step goes from the centre to the state's position; halved steps reach a film between both
         place, step, error = np.zeros(k), motion[:k].copy(), math.inf
         for count in range(MOST_FILMS):
             motion[:k] = place + step
@@ -294,14 +297,14 @@ class Case:
         return share, None
 
     def time_share(self, switch: Switch) -> float | None:
-        """Share of the time of evaluations with tangent that goes into an effect that a switch leaves out.
+        """Share of the computing time, evaluations with tangent, that is saved by a switch which removes an effect.
 
-        None if no film does without it, or time is not measured.
+        None if no state has a film with and without the effect, or if time is not measured.
         """
         if not self.measures_time:
             return None
         model, plain = self.model, self.build(switch(self.bearing))
-        # a history serves both: a model without an effect does not read what belongs to it
+        # both models get the same history: a model without an effect does not read the part of that effect
         pairs = [(s, replace(s, motion=_known_to(plain, s.motion))) for s in self.states]
         both = [(s, t) for s, t in pairs if s.evaluate(model).status is t.evaluate(plain).status is Status.CONVERGED]
         if not both:
@@ -311,7 +314,7 @@ class Case:
 
 
 def _straight(steady: Callable[[np.ndarray], Evaluation], model: BearingModel, motion: np.ndarray) -> Evaluation:
-    """Evaluate a steady film, if a flexible bore comes to it straight."""
+    """Evaluate a steady film; a flexible bore gives up where Newton's method has to halve a step."""
     if not isinstance(model, ElasticBearingModel):
         return steady(motion)
     model.elasticity.straight = True
@@ -322,7 +325,7 @@ def _straight(steady: Callable[[np.ndarray], Evaluation], model: BearingModel, m
 
 
 def _known_to(model: BearingModel, motion: np.ndarray) -> np.ndarray:
-    """A motion without the coordinates and rates of bore or journal that ``model`` does not have."""
+    """Motion of ``model``: without the coordinates and rates of a bore or journal that is rigid there."""
     q, q_t = np.split(motion[MOTION_SIZE:], 2)
     size = model.size if isinstance(model, ElasticBearingModel) else 0
     kept = slice(size) if model.bearing.bush is not None else slice(q.size - size, None)

@@ -21,12 +21,13 @@ from exudyn_ehd.joint.audit.samples import adiabatic_rise, time_mean
 from exudyn_ehd.joint.balance.limits import COOLER
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 
-# Radial deflection of a free solid steel pin under the peak pressure, over R p / E.
+# Radial deflection of a free solid steel pin under the peak pressure, over R p / E. Larger: elasticity of the journal
+# is found to matter more often.
 PIN_COMPLIANCE = 0.6
 
 
 def _over_gap(case: Case, deflection: np.ndarray) -> float:
-    """Largest deflection over the film thickness; touching surfaces count as a thousandth of the clearance apart."""
+    """Largest ratio of deflection and film thickness, which has a lower bound for surfaces that touch."""
     gap = np.maximum(case.numbers["minimum_gap"], SMALLEST_GAP_SHARE * case.bearing.radial_clearance)
     return float((deflection / gap).max())
 
@@ -37,7 +38,7 @@ def _deflecting(bearing: JournalBearing) -> str:
 
 
 def elasticity(case: Case) -> Finding:
-    """Deflection of the bore: as it is, of a liner that is only asked about, or of a steel ring."""
+    """Deflection of the bearing's bush; for a rigid bore that of the audit's liner or of a steel ring."""
     b, liner, numbers = case.bearing, case.liner, case.numbers
     if b.bush is not None:
         value, needless = _over_gap(case, numbers["deflection"]), "the bush is stiff enough to be rigid: bush=None."
@@ -65,7 +66,10 @@ def elasticity(case: Case) -> Finding:
 
 
 def journal_elasticity(case: Case) -> Finding | None:
-    """Deflection of the journal: as it is, or of a steel pin that nothing holds; None where it could not have one."""
+    """Deflection of the elastic journal, or for a rigid one that of a free steel pin.
+
+    None if the bush excludes an elastic journal.
+    """
     b, effect = case.bearing, "journal elasticity"
     if b.journal is not None:
         value = _over_gap(case, case.numbers["deflection"])
@@ -108,7 +112,7 @@ def thinnest(case: Case) -> tuple[str, float]:
 
 
 def roughness(case: Case) -> Finding:
-    """Flow factors: film thickness over roughness."""
+    """Effect of the flow factors, by the film thickness over the roughness."""
     is_on = case.bearing.roughness is not None
     return judged(
         case,
@@ -122,7 +126,7 @@ def roughness(case: Case) -> Finding:
 
 
 def contact(case: Case) -> Finding:
-    """Load that the contacts carry, how often and when, or the film thickness at which there should be one."""
+    """Share of the load carried by contacts, with their times; without a contact the film thickness over roughness."""
     b = case.bearing
     if b.contact is None and b.asperity is None:
         return judged(
@@ -139,7 +143,7 @@ def contact(case: Case) -> Finding:
 
 
 def _contact_share(case: Case) -> tuple[str, float]:
-    """Return how often and when contacts carry, in words, and the largest share of the load that they do."""
+    """Return a text that says how often and when contacts carry, and their largest share of the load."""
     record, numbers, often = case.record, case.numbers, ""
     carried = numbers["contact_load"]
     share = (carried / np.maximum(np.maximum(numbers["load"], carried), 1e-300)).max()
@@ -153,7 +157,7 @@ def _contact_share(case: Case) -> tuple[str, float]:
 
 
 def wear(case: Case) -> Finding | None:
-    """Wear goes with the contact's load, however small."""
+    """Wear, which is proportional to the load of the contact; None without wear."""
     if case.bearing.wear is None:
         return None
     needless = "surfaces hardly touch, nothing wears: wear=None."
@@ -161,7 +165,7 @@ def wear(case: Case) -> Finding | None:
 
 
 def piezoviscosity(case: Case) -> Finding:
-    """Viscosity under pressure."""
+    """Change of the viscosity under pressure."""
     law = case.bearing.lubricant.pressure_law
     alpha = switches.PIEZOVISCOSITY.coefficient if law is None else law.coefficient
     return judged(
@@ -177,7 +181,7 @@ def piezoviscosity(case: Case) -> Finding:
 
 
 def _temperature_rise(case: Case) -> float:
-    """Largest `adiabatic_rise`, K, that of a record by its means."""
+    """Largest `adiabatic_rise`, K; of a record by the time means of power, flow and speed."""
     b, r = case.bearing, case.record
     power, flow, speed = (case.numbers[name] for name in ("power_loss", "flow", "speed"))
     if r is not None and not b.bore_arcs and np.all(np.isfinite(r.leakage)):
@@ -188,7 +192,7 @@ def _temperature_rise(case: Case) -> float:
 
 
 def heating(case: Case) -> Finding:
-    """Change of viscosity by the film's own heat."""
+    """Change of the viscosity by the film's heat."""
     b, coefficient = case.bearing, switches.TEMPERATURE_COEFFICIENT
     law, is_warm = b.lubricant.temperature_law, b.thermal is not None
     is_on = is_warm and law is not None
@@ -212,9 +216,9 @@ def heating(case: Case) -> Finding:
 
 
 def walls(case: Case) -> Finding | None:
-    """Heat into bush and journal: its share, or what walls of steel would change at a steady state.
+    """Share of the heat that enters bush and journal, or change of a steady state by steel walls.
 
-    None without a temperature field, and for runs without such walls, which warm up for longer than the run.
+    None without a temperature field, and for runs without walls, because walls take longer than a run to warm up.
     """
     b, numbers = case.bearing, case.numbers
     if not isinstance(b.thermal, FilmEnergy):
@@ -238,7 +242,7 @@ def walls(case: Case) -> Finding | None:
 
 
 def temperature(case: Case) -> Finding | None:
-    """Highest temperature of the film against what oil bears; None for an isothermal one."""
+    """Highest temperature of the film, compared with the limit of mineral oils; None for an isothermal film."""
     thermal = case.bearing.thermal
     if thermal is None:
         return None
@@ -248,7 +252,7 @@ def temperature(case: Case) -> Finding | None:
 
 
 def shear_thinning(case: Case) -> Finding:
-    """Largest shear rate against the onset of thinning."""
+    """Largest shear rate over the rate at which thinning begins."""
     law = case.bearing.lubricant.shear_law
     onset = switches.MULTIGRADE.onset if law is None else law.onset
     return judged(
@@ -274,7 +278,10 @@ def faces_share(case: Case) -> Finding | None:
 
 
 def faces_heat(case: Case) -> Finding | None:
-    """Change of the viscosity by the faces' own heat, in the oil that they carry around."""
+    """Change of the viscosity by the heat of the thrust faces, in the oil that their sliding carries around.
+
+    None without faces, and for `LumpedThermal`, whose balance contains this heat.
+    """
     record, faces, oil = case.record, case.faces, case.bearing.lubricant
     if record is None or faces is None or isinstance(case.bearing.thermal, LumpedThermal):
         return None

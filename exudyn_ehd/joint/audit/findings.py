@@ -1,4 +1,4 @@
-"""Audit of a bearing: its findings about effects, and the limit from which on each effect matters."""
+"""Audit of a bearing: its findings about effects, and the limit beyond which each effect matters."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ON = {True: "on", False: "off", None: "-"}
 
 
 class Limit(NamedTuple):
-    """Limit from which on an effect matters, and the values for which another film is solved to tell.
+    """Limit beyond which an effect matters, and range of values in which films with and without it are compared.
 
     Attributes
     ----------
@@ -29,9 +29,11 @@ class Limit(NamedTuple):
     source : str
         Meaning of the value.
     nothing : float or None
-        Value beyond which the effect is plainly nothing; None: the value alone decides, no other film is solved.
+        Value on the harmless side of which the effect is negligible, so that no films are compared. None: the value
+        alone decides, films are never compared.
     much, much_on : float
-        From here on it plainly matters, and if it is on; the search for the film without it is long.
+        Value above which the effect surely matters: of an effect that is off, and of one that is on. Films are not
+        compared there, since the search for the other film would be long.
     """
 
     value: float
@@ -46,16 +48,15 @@ class Limit(NamedTuple):
         return value < self.value if self.below else value > self.value
 
     def is_unclear(self, value: float, on: bool | None) -> bool:
-        """Return whether another film has to tell if the effect matters."""
+        """Return whether the value leaves open if the effect matters, so that films have to be compared."""
         if self.nothing is None or value > (self.much_on if on else self.much):
             return False
         return not (value > self.nothing if self.below else value < self.nothing)
 
 
-# An effect that is not computed matters if load, peak pressure, friction or minimum film thickness would change by some
-# 5 to 10 % without it.
-# Shares without another source: of a bearing with L/D = 0.75 at eccentricity ratio 0.8, with Swift-Stieber.
-# Oil that has warmed by 0.7 of its coefficient's inverse is half as viscous.
+# Limits for which load, peak pressure, friction or minimum film thickness change by some 5 to 10 %. Percentages without
+# another source: bearing with L/D = 0.75 at eccentricity ratio 0.8, with Swift-Stieber.
+# Heating: a rise of 0.7 over the temperature coefficient halves the viscosity.
 LIMITS = {
     "misalignment": Limit(0.1, "of the mid-plane gap: that much of the minimum film thickness, 1 % of the peak"),
     "elasticity": Limit(
@@ -70,7 +71,7 @@ LIMITS = {
     "shear thinning": Limit(1.0, "shear rate over the one at which a multigrade oil begins to thin", nothing=0.2),
     "roughness": Limit(3.0, "film over roughness: 6 % of the load by flow factors", below=True, nothing=10.0),
     "asperities": Limit(3.0, "film over roughness, below which asperities carry", below=True, nothing=6.0),
-    # little load has much of a thin film's friction
+    # contacts that carry a small share of the load may cause a large share of the friction
     "contact": Limit(
         2e-3, "of the load: 5 % of the friction, where a film has 0.004 and asperities 0.1", False, 1e-6, 2e-3, 2e-3
     ),
@@ -194,7 +195,7 @@ class Audit:
         return tuple(f for f in self.findings if f.unneeded)
 
     def __getitem__(self, effect: str) -> Finding:
-        """The finding about an effect, by its name."""
+        """Return the finding about an effect, by its name."""
         for finding in self.findings:
             if finding.effect == effect:
                 return finding
@@ -225,11 +226,11 @@ class Audit:
         return "\n".join([*lines, *([""] if advice else []), *advice, *([""] if changes else []), *changes])
 
     def improved(self, bearing: JournalBearing) -> JournalBearing:
-        """The bearing with missing effects switched on, with typical numbers, and unneeded ones switched off.
+        """Return the bearing with missing effects switched on, with typical numbers, and unneeded ones switched off.
 
-        It follows every advice that the bearing's options allow; an arc takes neither heat nor surfaces that deflect.
-        The new numbers are typical ones: replace them by yours. Effects act on each other: compute the film or the run
-        anew with the result and audit it, until nothing is left to change.
+        Every advice is applied that the bearing's options allow; a bearing of arcs allows neither heat nor surfaces
+        that deflect. The new numbers are typical ones: replace them by yours. Effects act on each other: compute the
+        film or the run again with the result and audit it, until the audit advises no change.
 
         Parameters
         ----------
@@ -248,7 +249,7 @@ class Audit:
         remedies = [finding.remedy for finding in self.findings if finding.remedy is not None]
         if remedies and isinstance(bearing.film, ImpedanceMap):
             bearing = two_dimensional(bearing)
-        # turbulence leaves out laws of laminar films: where both are missing, the next audit says so
+        # turbulence excludes laws of laminar films: it is applied first, and advice that it excludes is dropped
         for remedy in sorted(remedies, key=lambda remedy: remedy is not turbulent):
             try:
                 bearing = remedy(bearing)
@@ -283,7 +284,7 @@ def judged(
     mattering: str = "",
     needless: str | None = None,
 ) -> Finding:
-    """A finding by the change that a switch makes, unless its value says enough.
+    """Return a finding by its indicator's value, and by the change of the films if the value leaves the verdict open.
 
     Parameters
     ----------
@@ -291,15 +292,15 @@ def judged(
     effect, indicator, value, on
         As in `Finding`.
     switch : function or None
-        Adds what is off and drops what is on.
+        Adds the effect if it is off, removes it if it is on.
     probe : function or None
-        Switch whose change is computed instead, which takes less time.
+        Switch that is faster to compute; the change is computed with it in place of ``switch``.
     limit : Limit or None
-        In place of the effect's own of `LIMITS`.
+        Limit in place of that in `LIMITS`.
     mattering : str
         Advice if the effect matters but is off.
     needless : str or None
-        Advice if it is on and does not matter; None for an effect that is never unneeded.
+        Advice if the effect is on and does not matter; None for an effect that is never unneeded.
     """
     limit, change = LIMITS[effect] if limit is None else limit, None
     if effect in case.omitted:
@@ -335,7 +336,7 @@ def judged(
 
 
 def _refusal(switch: Switch, bearing: JournalBearing) -> str:
-    """Return the message why a turbulent film does not support a switch; empty if it does."""
+    """Return the message why a turbulent film does not support a switch; empty if it does or the film stays laminar."""
     if bearing.turbulence is None and switch is not turbulent:
         return ""
     try:

@@ -2,21 +2,22 @@
 
 Time integration that rings, recognised from the accepted steps of a joint
 --------------------------------------------------------------------------
-With d_k = F_k - L_k, where L_k is the value at t_k of the line through the forces before and behind, an alternation
-F = F_0 + (-1)^k A has d_k = 2 (-1)^k A, and an oscillation with n steps per period d_k = (1 - cos(2 pi / n)) times its
-value: d changes its sign from step to step below some three steps per period only, which no step resolves. A force
-*zigzags* at a step if d there points against the d before and behind, and is more than a tenth of the force.
+The deviation of a force is d_k = F_k - L_k, where L_k is the value at t_k of the line through the forces of the steps
+k - 1 and k + 1. An alternation F = F_0 + (-1)^k A has d_k = 2 (-1)^k A. An oscillation with n steps per period has
+d_k = (1 - cos(2 pi / n)) times its value. So d changes its sign from step to step only below some three steps per
+period, and such oscillations are not resolved by the steps. A force *zigzags* at a step if d there points against d of
+the steps before and after it, and is more than a tenth of the force.
 
-That alone is no fault: whatever starts suddenly leaves an alternation that generalized alpha damps within some steps.
-A run that rings is thrown again and again: by steps that were halved, by Newton's method that accepts forces next to
-the solution, by impacts within a single step. So *bursts* are counted: zigzags stronger than the five steps before,
-and alternations that do not fade, once in so many steps.
+Zigzags alone are no fault: after a sudden start generalized alpha damps the alternation within some steps. In a run
+that rings, alternations are excited again and again: by halved steps, by Newton's method that accepts forces next to
+the solution, by impacts within a single step. So *bursts* are counted. A burst is a zigzag stronger than those of the
+five steps before it, or an alternation that does not fade, which counts once in `LASTING` zigzags.
 
-What a force does to the masses around it, and what it carries of their loads, is its mean over the steps: under
-Newmark's formulas, and those of generalized alpha, places follow ``F_k - d_k / 2``, the mean of (1, 2, 1) / 4 in equal
-steps, to which an alternation adds nothing. The rest is between the film and accelerations that nothing follows. A
-force that is many times that mean *throws* the masses to and fro within the steps: any oscillation of three and more
-steps per period, and a single impact, leave a fourth of it or more.
+Masses move by the mean of the force over the steps. By Newmark's formulas, and those of generalized alpha, positions
+depend on ``F_k - d_k / 2``, which in equal steps is the mean with the weights (1, 2, 1) / 4. An alternation adds
+nothing to this mean; it changes accelerations only. A force that is many times its mean *throws* the masses to and fro
+within the steps. Oscillations with three or more steps per period, and a single impact, have a mean of at least a
+fourth of the force.
 """
 
 from __future__ import annotations
@@ -29,24 +30,25 @@ import numpy as np
 
 from exudyn_ehd.status import RingingWarning
 
-# Size of a zigzag, share of the force there and of the largest one before, which fades by so much per step.
+# Least size of d in a zigzag: over the force there, and over the largest force before it, which counts less by this
+# factor per step. Larger: weaker alternations are ignored.
 LOCAL_SHARE, LARGEST_SHARE, FADING = 0.1, 0.01, 0.99
-# Share of a d by which those before and behind it point against it.
+# Least component of the neighbouring d against d, over d. Larger: only even alternations count as zigzags.
 EVEN = 0.3
-# Mean pressure on the projected area below which a force is none: rounding next to an ideal joint, Pa.
+# Mean pressure on the projected area, Pa, below which d is ignored as round-off next to an ideal joint.
 NEGLIGIBLE = 100.0
-# A burst is so much stronger than the steps before, or has kept such a share of its size over so many zigzags; steps
-# between two bursts.
+# Limits of a burst: least strength over that of the five steps before; or least share of the last burst's strength
+# after this many zigzags; least number of steps between two bursts. Larger values: fewer bursts are counted.
 STRONGER, KEPT, LASTING, APART = 1.5, 0.75, 20, 5
-# Bursts within so many steps are counted together; a run rings from so many on.
+# Number of steps in which bursts are counted together, and number of bursts in it from which on a run rings.
 WINDOW, LIMIT = 100, 4
-# A force is out of all proportion if it is so many times its mean, presses by so many Pa on the projected area, and
-# fades no faster than to this share of the largest one; a run that rings ends at so many of them within the window.
+# Limits of a force that throws masses: least ratio to its mean, least pressure on the projected area in Pa, least share
+# of the largest force; a run that rings ends at this number of such forces within the window.
 PROPORTION, HEAVY, STRONG_SHARE, MOST_THROWS = 10.0, 1e6, 0.3, 20
 
 
 class RingingWatch:
-    """Counts the bursts of one joint's force; some microseconds per step.
+    """Counter of the bursts of one joint's force; it takes some microseconds per step.
 
     Parameters
     ----------
@@ -60,9 +62,9 @@ class RingingWatch:
     first, last : float
         Times of the first and the last burst, s; nan without one.
     rings : bool
-        Whether `LIMIT` or more bursts have lain in the window.
+        True after `LIMIT` or more bursts lay in one window.
     worst : (float, float)
-        The largest force out of all proportion, and its mean, N.
+        Largest force that throws masses, and its mean, N.
     """
 
     def __init__(self, area: float) -> None:
@@ -73,7 +75,7 @@ class RingingWatch:
         """Forget all steps."""
         self.most, self.rings = 0, False
         self.first = self.last = math.nan
-        # time and force of the last steps; the last three d and five before, with their sizes
+        # time and force of the last steps; the last eight d with their sizes
         self._states: deque[tuple[float, float, float, float]] = deque(maxlen=4)
         self._bends: deque[tuple[float, float, float, float]] = deque([(0.0, 0.0, 0.0, 0.0)] * 8, maxlen=8)
         self._bursts: deque[int] = deque()
@@ -83,19 +85,19 @@ class RingingWatch:
         self._largest = self._strength = 0.0
 
     def take(self, time: float, x: float, y: float, z: float = 0.0) -> bool:
-        """Take an accepted step.
+        """Add an accepted step.
 
         Parameters
         ----------
         time : float
-            s; not after the last one begins anew.
+            s; a time that is not later than the previous one resets the counter.
         x, y, z : float
             Force, N; z of a ball.
 
         Returns
         -------
         bool
-            Whether the run rings, that is, whether this step is a burst and `LIMIT` or more lie in the window.
+            True if this step is a burst and `LIMIT` or more bursts lie in the window.
         """
         states = self._states
         if states and not time > states[-1][0]:
@@ -154,12 +156,12 @@ class RingingWatch:
 
     @property
     def throws(self) -> bool:
-        """Return whether the run rings with forces out of all proportion to the moved masses and the loads."""
+        """Return whether the run rings and `MOST_THROWS` forces within the window have thrown masses."""
         return self.rings and self._throws[0] > self._step - WINDOW
 
 
 def watched(time: np.ndarray, force: np.ndarray, area: float) -> RingingWatch:
-    """A watch that has seen a record: times (n,) in s and forces (n, 2) or (n, 3) in N on an area in m2."""
+    """Watch after all steps of a record: times (n,) in s and forces (n, 2) or (n, 3) in N on an area in m2."""
     watch = RingingWatch(area)
     for t, parts in zip(time.tolist(), force.tolist(), strict=True):
         watch.take(t, *parts)
@@ -167,7 +169,10 @@ def watched(time: np.ndarray, force: np.ndarray, area: float) -> RingingWatch:
 
 
 def warn(name: str, watch: RingingWatch, *, starts_well: bool) -> None:
-    """Warn that the run of the joint ``name`` rings; ``starts_well`` if Newton's method is started by this package."""
+    """Warn that the run of the joint ``name`` rings.
+
+    ``starts_well``: this package gives Newton's method its initial guess, so that `SolveDynamic` is not advised.
+    """
     start = "" if starts_well else "use ehd.SolveDynamic(mbs, simulationSettings) in place of mbs.SolveDynamic, or "
     warnings.warn(
         f"LubricatedJoint '{name}': from t = {watch.first:.9g} s to {watch.last:.9g} s the film's force alternates "

@@ -16,34 +16,35 @@ from exudyn_ehd.joint.solved_film import FacesHeat, History, SolvedFilm
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import Status
 
-# Recorded steps that are run again before a state, so that a film that remembers has forgotten where they started: the
-# last ones, and so many a turn of the turns before, fewer in a flexible bore.
+# Recorded steps that are evaluated again before a state, so that the film's memory no longer depends on its start:
+# number of last steps, steps per turn before them, and number of turns in a rigid and in a flexible bore. Larger:
+# slower audits.
 REPLAYED, A_TURN, TURNS = 60, 80, (3.0, 1.0)
-# Smallest amplitude that a squeezing journal is taken to have at one instant, over the clearance: with a larger one the
-# frequency of journals that pass the centre is lower, with a smaller one it is higher.
+# Least amplitude of a squeezing journal at a single state, over the clearance. Larger: lower frequencies are estimated
+# for journals near the centre; smaller: higher ones.
 AMPLITUDE = 0.1
-# Radial deflection of a steel ring under the peak pressure, over R p / E; half of it under a uniform one.
+# Radial deflection of a steel ring under the peak pressure, over R p / E; under a uniform pressure it is half of this.
 RING_COMPLIANCE = 0.7
 
 Sources = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Sources of Reynolds' equation by motions (n, k), at both ends of a journal or in the centre of a ball: position and
-velocity of the axis (e, n, k), m and m/s, and amplitude (e, n) of the sliding's source, m/s."""
+"""Sources of Reynolds' equation of motions (n, k), at e places: both ends of a journal or the centre of a ball.
+Position and velocity of the axis (e, n, k), m and m/s, and amplitude (e, n) of the wedge term, m/s."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FilmSteps:
-    """Accepted steps of a joint with a film, as arrays over the steps; what a film model does not report is nan.
+    """Accepted steps of a joint with a film, as arrays over the steps; quantities that a film model lacks are nan.
 
     Attributes
     ----------
     time : (n,) array
         s.
     force : (n, 3) array
-        N, on the journal.
+        Force on the journal, N.
     minimum_gap, peak_pressure, power_loss, contact_load : (n,) arrays
         m, Pa, W, N.
     step_error : (n,) array
-        Estimated error of the gap that the time steps have made, over the minimum film thickness.
+        Estimated error of the gap by the time steps, over the minimum film thickness.
     """
 
     time: np.ndarray
@@ -57,7 +58,7 @@ class FilmSteps:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RecordedSteps(FilmSteps):
-    """Accepted steps of a joint that an audit looks at.
+    """Accepted steps of a joint for an audit.
 
     Attributes
     ----------
@@ -66,7 +67,7 @@ class RecordedSteps(FilmSteps):
     leakage, film_temperature, bush_temperature, journal_temperature, bore_displacement : (n,) arrays
         m3/s, K, K, K, m.
     thrust_power_loss : (n,) array
-        W, of films on the end faces.
+        Power loss of films on the end faces, W.
     """
 
     motion: np.ndarray
@@ -78,9 +79,9 @@ class RecordedSteps(FilmSteps):
     thrust_power_loss: np.ndarray
 
     def extremes(self, *more: np.ndarray) -> list[int]:
-        """Steps, sorted, with the thinnest film, the highest pressure, loss and contact load, and the most of others.
+        """Return the sorted numbers of the steps with the thinnest film, the highest pressure, loss and contact load.
 
-        ``more``: (n,) arrays.
+        ``more``: (n,) arrays, the steps of whose maxima are returned too.
         """
         keys = (-self.minimum_gap, self.peak_pressure, np.abs(self.power_loss), self.contact_load, *more)
         return sorted({int(np.nanargmax(key)) for key in keys if np.any(np.isfinite(key))})
@@ -88,7 +89,10 @@ class RecordedSteps(FilmSteps):
 
 @dataclass(frozen=True, eq=False)
 class FilmState:
-    """Arguments of one `BearingModel.evaluate`, a flexible bore's in the motion too, and the step of a record."""
+    """Arguments of one `BearingModel.evaluate`, and the number ``recorded`` of the state's step in a record.
+
+    The motion contains the coordinates of a flexible bore.
+    """
 
     motion: np.ndarray
     history: History | None = None
@@ -102,7 +106,7 @@ class FilmState:
 
 
 def time_mean(time: np.ndarray, values: np.ndarray) -> float:
-    """Mean over time of what is known of values (n,), whatever the sizes of the steps; nan of none."""
+    """Mean over time of the finite values of (n,), for steps of any size; nan if no value is finite."""
     known = np.isfinite(values)
     time, values = time[known], values[known]
     span = float(np.ptp(time)) if time.size else 0.0
@@ -112,18 +116,18 @@ def time_mean(time: np.ndarray, values: np.ndarray) -> float:
 def adiabatic_rise(bearing: JournalBearing, power: np.ndarray, flow: np.ndarray, speed: np.ndarray) -> np.ndarray:
     """Temperature rise P / (rho c_p Q), K, by power losses, W, flows, m3/s, and sliding speeds, m/s.
 
-    Without flow through the bearing, that of one turn's Couette flow.
+    If the flow is below 1 % of the Couette flow, or unknown, Q is the Couette flow, as if replaced in each turn.
     """
     couette = 0.5 * speed * bearing.radial_clearance * bearing.length
-    # not true for a flow that is not known
+    # the comparison is False for an unknown flow, nan
     heat = bearing.lubricant.density * bearing.lubricant.specific_heat * np.where(flow > 1e-2 * couette, flow, couette)
     return np.divide(power, heat, out=np.zeros_like(heat), where=heat > 0.0)
 
 
 def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmState]:
-    """The worst states of a record, with the histories that its last steps lead to (a worn depth starts at zero).
+    """Worst states of a record, with the histories from evaluating steps before them again; worn depths start at zero.
 
-    Flexible bores, which a record does not hold, settle under their films.
+    A record does not contain the deflection of flexible bores: they are taken in equilibrium with their films.
     """
     intervals = np.diff(record.time)
     turns = 0.5 * (record.motion[1:, 8] + record.motion[:-1, 8]) * intervals
@@ -154,17 +158,19 @@ def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmStat
 
 
 def _replayed(turned: np.ndarray, first: int, last: int) -> list[int]:
-    """Steps from one to another one, of the angles (n,) that the journal has turned: the last ones, some before."""
+    """Numbers of steps from ``first`` to ``last``: all of the last `REPLAYED`, and `A_TURN` per turn before them.
+
+    ``turned`` (n,): angle that the journal has turned up to each step, rad.
+    """
     recent = max(first, last - REPLAYED)
     early = np.searchsorted(turned, np.arange(turned[first], turned[recent], 2.0 * math.pi / A_TURN))
     return np.unique(np.concatenate([np.maximum(early, first), np.arange(recent, last + 1)])).tolist()
 
 
 def _differenced(record: RecordedSteps) -> np.ndarray:
-    """Motions (n, 10) with the rates of the steps' own differences.
+    """Motions (n, 10) with rates from the differences of the recorded poses.
 
-    Rates that an integrator leaves behind on a flexible bore alternate, those of the journal with those of the bore,
-    which a record does not hold.
+    Rates of an integrator may alternate with those of a flexible bore, which a record does not contain.
     """
     motions = record.motion.copy()
     motions[1:, 4:8] = np.diff(record.motion[:, :4], axis=0) / np.diff(record.time)[:, None]
@@ -172,7 +178,10 @@ def _differenced(record: RecordedSteps) -> np.ndarray:
 
 
 def _first_history(model: BearingModel, record: RecordedSteps, k: int) -> History | None:
-    """History of a flooded film at a recorded step, at the recorded temperature, with walls as hot as at the film."""
+    """History of a flooded film at a recorded step, with the recorded temperatures of film, bush and journal.
+
+    A wall has one temperature throughout, that of its recorded surface.
+    """
     history, thermal = model.initial_history(record.motion[k]), model.effects.thermal
     T = float(record.film_temperature[k])
     if history is None or history.temperature is None or thermal is None or not math.isfinite(T):
@@ -185,10 +194,10 @@ def _first_history(model: BearingModel, record: RecordedSteps, k: int) -> Histor
 
 
 def worst_steps(bearing: JournalBearing, record: RecordedSteps) -> list[int]:
-    """Steps, sorted, in which something is worst.
+    """Return the sorted numbers of the steps in which one of the audited quantities is worst.
 
-    Minimum film thickness, highest pressure, loss, contact load and speed, largest tilt and deflection, strongest
-    squeeze.
+    These are: minimum film thickness, highest pressure, loss, contact load and speed, largest tilt and deflection,
+    strongest squeeze.
     """
     deflected = record.bore_displacement / np.maximum(record.minimum_gap, SMALLEST_GAP_SHARE * bearing.radial_clearance)
     squeeze = squeeze_share(sources(bearing, record.motion))
@@ -196,7 +205,7 @@ def worst_steps(bearing: JournalBearing, record: RecordedSteps) -> list[int]:
 
 
 def sources(bearing: JournalBearing, motions: np.ndarray) -> Sources:
-    """Sources of Reynolds' equation by motions (n, >= 9), see `Sources`."""
+    """Sources of Reynolds' equation of motions (n, >= 9), see `Sources`."""
     ends = 0.5 * bearing.length * np.array([[[-1.0]], [[1.0]]])
     place, velocity = (motions[:, k : k + 2] + ends * motions[:, k + 2 : k + 4] for k in (0, 4))
     return place, velocity, 0.5 * np.abs(motions[:, 8]) * np.linalg.norm(place, axis=2)
@@ -213,19 +222,19 @@ def tilt_loss(bearing: JournalBearing, motions: np.ndarray) -> np.ndarray:
 def squeeze_share(by_motion: Sources) -> np.ndarray:
     """Share (n,) of the squeeze term among the sources of the Reynolds equation, 0 to 1: v / (v + e |omega| / 2).
 
-    v is the velocity and e the eccentricity of the journal's axis, each the largest along the bearing; the amplitudes
-    of dh/dt and (omega / 2) dh/dtheta. Of a ball v / (v + |e x w| / 2).
+    v is the velocity and e the eccentricity of the journal's axis, each the larger one of both ends. v and e omega / 2
+    are the amplitudes of dh/dt and (omega / 2) dh/dtheta. For a ball the share is v / (v + |e x w| / 2).
     """
     squeeze, wedge = np.linalg.norm(by_motion[1], axis=2).max(axis=0), by_motion[2].max(axis=0)
     return squeeze / np.maximum(squeeze + wedge, 1e-300)
 
 
 def squeeze_rate(by_motion: Sources, clearance: float, time: np.ndarray | None = None) -> float:
-    """Acceleration a of the squeeze over the sources of the Reynolds equation, 1/s: a / (v + wedge), the larger end's.
+    """Acceleration a of the squeeze over the sources of the Reynolds equation, a / (v + wedge), 1/s; the larger end's.
 
-    Flow that swings at w between plates takes the pressure ``12 mu q / h^3 (1 + i Re / 10)``, Re = rho w h^2 / mu, up
-    to its first order in Re. So rho c^2 / mu times this rate is the Re of the squeeze, times its share of the sources
-    where the surfaces slide as well.
+    Flow between plates that oscillates at the angular frequency w needs the pressure gradient ``12 mu q / h^3
+    (1 + i Re / 10)`` to first order in Re = rho w h^2 / mu. So rho c^2 / mu times the returned rate is the Re of the
+    squeeze; where the surfaces slide as well, it is this Re times the squeeze's share of the sources.
 
     Parameters
     ----------
@@ -233,9 +242,9 @@ def squeeze_rate(by_motion: Sources, clearance: float, time: np.ndarray | None =
     clearance : float
         m.
     time : (n,) array or None
-        s, of the steps of a run, whose means count: a is the difference of the velocities before and after a step,
-        which an alternation from step to step leaves alone. None: a single state, a = v^2 / e of a circular whirl about
-        the centre.
+        Times of the steps of a run, s. The result is then a ratio of time means, and a is the difference of the
+        velocities before and after a step, in which alternations from step to step cancel. None: a single state, with
+        a = v^2 / e of a circular whirl about the centre.
     """
     place, velocity, wedge = by_motion
     strength = np.linalg.norm(velocity, axis=2) + wedge
@@ -249,7 +258,7 @@ def squeeze_rate(by_motion: Sources, clearance: float, time: np.ndarray | None =
 
 
 def film_numbers(model: BearingModel, evaluation: Evaluation) -> dict[str, float]:
-    """Numbers of a film, besides those that its quantities and its motion give.
+    """Numbers of a film for an audit.
 
     Returns
     -------
@@ -285,7 +294,7 @@ def film_numbers(model: BearingModel, evaluation: Evaluation) -> dict[str, float
 
 
 def recorded_numbers(record: RecordedSteps, k: int) -> dict[str, float]:
-    """Numbers of a recorded step in place of those of its film, whose bore is settled and not in motion."""
+    """Recorded numbers of a step, for flexible bores: the state's film has a bore in equilibrium, at rest."""
     return {
         "minimum_gap": max(float(record.minimum_gap[k]), 1e-9 * float(np.max(record.minimum_gap))),
         "peak_pressure": float(record.peak_pressure[k]),
@@ -297,7 +306,7 @@ def recorded_numbers(record: RecordedSteps, k: int) -> dict[str, float]:
 
 
 def _wall_shares(model: BearingModel, film: SolvedFilm) -> tuple[float, float]:
-    """Shares of a film's heat that enter a bush and a journal that conduct, at the temperatures of the step's start."""
+    """Shares of a film's heat that enter a conducting bush and journal, at the start-of-step temperatures."""
     thermal = model.effects.thermal
     if thermal is None or film.walls is None or film.temperature is None:
         return 0.0, 0.0

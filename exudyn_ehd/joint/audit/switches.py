@@ -1,4 +1,7 @@
-"""Effects switched on and off in a description: with typical numbers where a bearing names none, and without."""
+"""Switches of an audit: functions that add an effect to a bearing's description or remove it.
+
+Added effects have typical numbers where the bearing does not name its own.
+"""
 
 from __future__ import annotations
 
@@ -21,19 +24,21 @@ from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.joint.balance.limits import is_fed
 
-# Mineral oils under pressure and by temperature, 1/K (ISO VG 46 near 70 degrees Celsius); multigrade oils.
+# Typical oils: pressure law and temperature coefficient, 1/K, of a mineral oil (ISO VG 46 near 70 degrees Celsius);
+# shear law of a multigrade oil.
 PIEZOVISCOSITY = RoelandsPressure(coefficient=2e-8)
 TEMPERATURE_COEFFICIENT = 0.03
 MULTIGRADE = CarreauShear(relaxation_time=1e-6, exponent=0.7, residual=0.5)
-# Ground steel journal in a finely turned steel bore.
+# Asperities of a ground steel journal in a finely turned steel bore.
 ROUGH_STEEL = GreenwoodTripp(composite_roughness=0.5e-6, composite_modulus=1.15e11)
-# Gauge pressure of oil vapour, Pa; oil at less carries tension.
+# Gauge pressure of oil vapour, Pa. Oil at a lower pressure is under tension.
 VAPOUR_PRESSURE = -1e5
 STEEL = {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3, "density": 7800.0}
 RING_THICKNESS = 0.5  # of the bore radius
 
 OIL_CONDUCTIVITY, STEEL_EXPANSION = 0.13, 1.15e-5  # W/(m K), 1/K
-# W/(m2 K) from a housing to still air with its radiation, and shaft lengths, radii, on either side.
+# Heat transfer from a housing to still air by convection and radiation, W/(m2 K), and length over radius of the shaft
+# on either side through which heat leaves. A larger coefficient and a shorter shaft cool more.
 AIR_COEFFICIENT, SHAFT = 15.0, 4.0
 
 Switch = Callable[[JournalBearing], JournalBearing]
@@ -44,7 +49,10 @@ def _oil(bearing: JournalBearing, **laws: object) -> JournalBearing:
 
 
 def _ring(elements: tuple[int, int, int], tolerance: float, bearing: JournalBearing) -> JournalBearing:
-    """Return the bearing with a steel ring half a radius thick, held outside, of elements (axial, radial, around)."""
+    """Return the bearing with a steel ring, half a radius thick and held outside.
+
+    ``elements``: numbers of finite elements (axial, radial, around).
+    """
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.bush import ModalBush
     from exudyn_ehd.solid.mesh import HollowCylinder
@@ -58,14 +66,15 @@ def _ring(elements: tuple[int, int, int], tolerance: float, bearing: JournalBear
     return replace(bearing, bush=bush)
 
 
-# the coarse one within 0.1 s: peak and minimum film thickness 2 % off where they change by 15 %, 8 % at 60 %
+# The coarse ring takes below 0.1 s. Error of peak and minimum film thickness: 2 % where they change by 15 %, 8 % at 60
+# %.
 steel_ring, coarse_ring = partial(_ring, (4, 2, 40), 0.02), partial(_ring, (2, 1, 24), 0.08)
 
 
 def _pin(tolerance: float, bearing: JournalBearing) -> JournalBearing:
     """Return the bearing with a solid steel journal as long as the film, not held.
 
-    With a ``tolerance`` of 0.08, peaks are 1 to 3 % off where the change is large.
+    With a ``tolerance`` of 0.08 the error of the peak pressure is 1 to 3 % where the change is large.
     """
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.journal.modes import ElasticJournal
@@ -84,9 +93,9 @@ def piezoviscous(bearing: JournalBearing) -> JournalBearing:
 
 
 def heated(bearing: JournalBearing) -> JournalBearing:
-    """Return the bearing with a mineral oil's law of the temperature, and with one film temperature unless it has any.
+    """Return the bearing with a temperature law of its oil and a thermal option; existing ones are kept.
 
-    Oil enters that film at the lubricant's temperature.
+    Added are the law of a mineral oil and `LumpedThermal`, whose oil is supplied at the lubricant's temperature.
     """
     oil = bearing.lubricant
     if oil.temperature_law is None:
@@ -130,9 +139,9 @@ def isothermal(bearing: JournalBearing) -> JournalBearing:
 
 
 def warmer(rise: float, coefficient: float) -> Switch:
-    """Return a switch to the viscosity after a temperature rise, K, that the oil's own viscosity would give.
+    """Return a switch to the viscosity of a film that heats itself; ``rise``, K: rise at the unchanged viscosity.
 
-    The heat is proportional to the viscosity: coefficient r = coefficient rise exp(-coefficient r).
+    The heat is proportional to the viscosity, so the actual rise r solves r = rise exp(-coefficient r).
     """
     return partial(_thinner, math.exp(-float(scipy.special.lambertw(coefficient * rise).real)))
 
@@ -153,7 +162,7 @@ def untouching(bearing: JournalBearing) -> JournalBearing:
 
 
 def roughness_height(bearing: JournalBearing) -> float:
-    """Composite roughness that a bearing names, m, or a typical one."""
+    """Composite roughness of a bearing, m; a typical one if it names none."""
     return (bearing.asperity or bearing.roughness or ROUGH_STEEL).composite_roughness
 
 
@@ -168,7 +177,7 @@ def touching(bearing: JournalBearing) -> JournalBearing:
 
 
 def cavity_pressure(bearing: JournalBearing) -> float:
-    """Pressure of a bearing's cavities, Pa, or oil vapour's where nothing feeds them at their own."""
+    """Pressure for cavities that conserve mass, Pa: the bearing's own, or that of oil vapour if no oil is fed in."""
     pressure = max(bearing.cavitation.cavity_pressure, VAPOUR_PRESSURE)
     return pressure if is_fed(bearing, pressure) else min(pressure, VAPOUR_PRESSURE)
 
@@ -193,7 +202,7 @@ def _on_grid(n_theta: int, n_z: int, bearing: JournalBearing) -> JournalBearing:
     return replace(bearing, film=replace(bearing.film, n_theta=n_theta, n_z=n_z))
 
 
-# Switches that take an effect away, or add one without numbers of its own.
+# Switches that remove an effect, or add one that needs no numbers.
 rigid: Switch = partial(replace, bush=None)
 rigid_journal: Switch = partial(replace, journal=None)
 isoviscous: Switch = partial(_oil, pressure_law=None)

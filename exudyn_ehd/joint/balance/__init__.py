@@ -1,9 +1,9 @@
-"""Steady films in balance: with their own heat, and with a load.
+"""Steady films in balance with their own heat, and with a load.
 
 Module map
 ----------
 newton      one damped Newton's method for position and temperature; film at a motion
 position    journal's position under a load
-limits      temperatures and pressures beyond which a film is told of; advice for films without a solution
+limits      temperatures and pressures beyond which a film causes a warning; advice for films without a solution
 resolution  grids too coarse for a film's pressure peak
 """

@@ -18,11 +18,12 @@ from exudyn_ehd.joint.solved_film import SolvedFilm
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import SMALL, FilmError, HotFilmWarning, OverloadWarning, StarvationWarning, Status, warn_user
 
-# Pressures at the peak and on the projected area, Pa; films of real machines stay below a third of them.
+# Peak pressure and mean pressure on the projected area, Pa, above which a run or study warns of a wrong model. Films of
+# real machines stay below a third of them.
 HIGHEST_PEAK, HIGHEST_MEAN = 3e9, 1e9
 PRESSED_THROUGH = "the journal was pressed through its contact by more than the clearance"
-# K. Rules of thumb, not properties of an oil: 150 degrees Celsius, from which mineral oils oxidise fast, and what is
-# beyond any oil, so that a film of one is a wrong answer.
+# Temperatures in K, rules of thumb and not properties of an oil. Above HOT, 150 degrees Celsius, mineral oils oxidise
+# fast: a warning. Above HOTTEST no oil is a liquid, so that the film is wrong: an error.
 HOT, HOTTEST = 423.15, 700.0
 COOLER = (
     "let more oil flow through (end pressures, supply, clearance), give the thermal effect heat transfer to the "
@@ -41,14 +42,14 @@ Temperature = float | np.ndarray | None
 
 
 def mean_pressure(bearing: JournalBearing, force: float) -> float:
-    """Force, N, on the projected area, Pa."""
+    """Mean pressure of a force, N, on the projected area, Pa."""
     return force / (2.0 * bearing.journal_radius * bearing.length)
 
 
 def warn_of_overload(bearing: JournalBearing, peak: float, force: float, where: str) -> None:
     """Warn in the name of ``where`` of a film with a peak pressure, Pa, or a force, N, that no material bears."""
     mean = mean_pressure(bearing, force)
-    # films without a peak have nan
+    # a film model without peak pressure reports nan, for which the comparison is False
     if not peak > HIGHEST_PEAK and not mean > HIGHEST_MEAN:
         return
     warn_user(
@@ -75,7 +76,10 @@ def warn_of_starved(bearing: JournalBearing, reservoirs: Reservoirs | None, wher
 
 
 def refuse_pressed_through(bearing: JournalBearing, gap: float, where: str) -> None:
-    """Refuse in the name of ``where`` a journal so deep in a rigid bore, ``gap`` in m, that no contact explains it."""
+    """Raise `FilmError` in the name of ``where`` if a gap, m, is below minus the clearance in a rigid bore.
+
+    No contact explains such a depth.
+    """
     if getattr(bearing, "yielding", None) is None and math.isfinite(gap) and gap < -bearing.radial_clearance:
         raise FilmError(
             f"{where}: {PRESSED_THROUGH}, minimum film thickness {gap:.3g} m; check load, eccentricity and units, or "
@@ -98,7 +102,7 @@ def hottest(temperature: float | np.ndarray, grid: FilmGrid) -> str:
 
 
 def require_oil_bears(temperature: Temperature, grid: FilmGrid, where: str) -> None:
-    """Raise `FilmError` in the name of ``where`` for a film in which no oil is a liquid."""
+    """Raise `FilmError` in the name of ``where`` for a film that is hotter than `HOTTEST` anywhere."""
     if temperature is not None and is_above(HOTTEST, temperature):
         raise FilmError(f"{where}: the film is at {hottest(temperature, grid)}, {NO_OIL}")
 
@@ -140,7 +144,7 @@ def outside_table(film: object) -> str:
 
 
 def warn_of_heat(temperature: Temperature, grid: FilmGrid, where: str) -> bool:
-    """Warn in the name of ``where`` of a film that oil does not bear for long; whether it is one."""
+    """Warn in the name of ``where`` of a film hotter than `HOT`; return whether it is."""
     if temperature is None or not is_above(HOT, temperature):
         return False
     warn_user(hot_film(temperature, grid, where), HotFilmWarning)
@@ -150,7 +154,8 @@ def warn_of_heat(temperature: Temperature, grid: FilmGrid, where: str) -> bool:
 def too_hot(T: Temperature, carried: float) -> str:
     """Return the part of a message that explains a load limit by heat.
 
-    It is empty if the film is no hotter than oil bears and does not follow from smaller loads.
+    ``carried``: largest load, N, that was reached by continuation from smaller loads; 0 without one. The part is empty
+    if ``carried`` is 0 and the film is no hotter than `HOT`.
     """
     if T is None or not (carried or is_above(HOT, T)):
         return ""
@@ -163,7 +168,7 @@ def too_hot(T: Temperature, carried: float) -> str:
 
 
 def advice(status: Status, bearing: object) -> str:
-    """Return the remedy for a failed evaluation of this bearing; `Status.advice` without a special one."""
+    """Return the remedy for a failed evaluation of a bearing; `Status.advice` if no special remedy exists."""
     if status is Status.NO_FILM and isinstance(getattr(bearing, "bush", None), ElasticLiner):
         return (
             "the gap closed somewhere, most likely at an end, where an ElasticLiner carries no pressure and does not "
@@ -192,7 +197,7 @@ def advice(status: Status, bearing: object) -> str:
         and getattr(oil, "density_law", None)
         and not getattr(closure, "conserves_mass", True)
     ):
-        # rho dh/dt is there, h drho/dt, which would hold the pressure, is not
+        # the closure includes rho dh/dt but not h drho/dt, which would limit the pressure
         return (
             f"{status.advice} With a density_law and {type(closure).__name__}, which keeps no account of the oil, thin "
             "films that are pressed together fast may have no pressure: what oil takes in as it gets denser is left "

@@ -1,24 +1,25 @@
-"""One damped Newton's method for steady films: for the journal's position under a load, and for the temperature.
+"""Damped Newton's method for steady films, which finds the journal's position under a load and the temperature.
 
-Of the free coordinates x of the journal and the temperature T, with the force F of the films and the load W, and with
-the temperature T* that is in balance with the heat of the film at x and T,
+The unknowns are the free coordinates x of the journal and the temperature T. F is the force of the films, W the load,
+and T* the temperature in balance with the heat of the film at x and T:
 
     F(x, T) + W = 0,    T*(x, T) - T = 0.
 
-A round solves one film, whose flexible bore is in balance with it. It takes Newton's step in x at the film's
-temperature, with its forces multiplied by what the mean viscosity changes by from T to T*, and the step to T*. Near
-the end Anderson's acceleration of both finds what each adds to the other. With a resistance r, N/m, the step in x is
-damped after Levenberg (1944) and Marquardt (1963): with K = -dF/dx
+A round solves one film, with a flexible bore in balance with it. It makes Newton's step in x, and the step from T to
+T*. For Newton's step, the forces are multiplied by the ratio of the mean viscosities at T* and at T. Near the
+solution Anderson's acceleration of both steps accounts for the coupling of x and T. With a resistance r, N/m, the step
+in x is damped after Levenberg (1944) and Marquardt (1963): with K = -dF/dx
 
     (K^T K + r^2 I) step = K^T (F + W)
 
-goes downhill in |F + W|^2 for r large enough, whatever K; r falls as |F + W| does, and a step that increases it is
-taken back and r grows. Slow and sure where Newton's method jumps over a film that starves or touches, and where a film
-without a cavity turns the journal across the load. A step that meets no film is halved.
+reduces |F + W|^2 for r large enough, whatever K. After a step that reduces |F + W|, r is made smaller. A step that
+increases it is rejected and r is made larger. Damped steps are slow but reliable where Newton's method jumps over a
+film that starves or touches, and where a film without a cavity moves the journal across the load. Without a resistance,
+a step that leads to no film is halved.
 
 Free coordinates are x and y, and the place z along the axis if films on the end faces carry an axial load.
 
-The steady film at a prescribed motion of the journal keeps its own temperature and oil content too: `evaluate_at`.
+`evaluate_at` finds the steady film at a prescribed motion of the journal, with its temperature and oil content.
 """
 
 from __future__ import annotations
@@ -35,26 +36,30 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, seen_by_faces
 from exudyn_ehd.status import ROUNDING, SMALL, FilmError, Status
 
-# Change of the temperature that counts as settled, as a share of the film's rise over its coldest source; where
-# round-off of hot fields keeps changes from falling further, `ROUNDING` does.
+# Tolerance of the temperature's change in a search, as a share of the film's rise over its coldest source. Larger:
+# fewer rounds, less accurate temperatures. A search that round-off stops before is accepted up to `ROUNDING`.
 SETTLED = 1e-11
 LOAD_TOLERANCE = 1e-10
-# Rounds of a search, and of one from a film nearby, or those that may pass without the error falling to a share of what
-# it was. More rounds, and a share nearer to 1, give up later.
+# Largest number of rounds of a search; number of rounds from a film nearby, and of rounds in a row whose error does not
+# fall below `FALLS` times the smallest error. Larger: a hopeless search gives up later; smaller: slow ones fail.
 ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
-# Damping of the temperature's steps below which it gives up where they make no progress.
+# Damping factor of the temperature's steps, below which a search without progress gives up.
 WEAKEST = 0.1
-# Halvings of a step without a film, or steps of the first position towards the centre, after which there is none.
+# Largest number of halvings of a step that leads to no film, and of moves of the first position towards the centre.
 HALVINGS = 8
-# Film solves of one search; a position on a flexible bore takes some ten, one with a temperature field some thirty.
+# Largest number of film solves of one search. A round takes some ten of them on a flexible bore. Larger: a hopeless
+# search takes longer.
 LARGEST_EFFORT = 6000
-# K: largest change of a round, change that the acceleration starts from, and one that weighs as much as a clearance.
+# Changes of the temperature in K: the largest one in a round; the one below which Anderson's acceleration is used; the
+# one that has the same scaled size as a move by the clearance.
 LARGEST_CHANGE, ACCELERATED, TYPICAL_CHANGE = 50.0, 5.0, 30.0
-# Differences of past rounds that the acceleration combines.
+# Largest number of differences of past rounds that Anderson's acceleration combines.
 DEPTH = 10
-# K, up to which a search goes on, far beyond what any oil bears: on its way a film is hotter than where it ends.
+# Temperature in K above which a search fails. It is far above `HOTTEST`, because films during a search may be hotter
+# than the solution.
 DIVERGED = 2000.0
-# Share of the smallest gap that a step may use up; step over the clearance where surfaces may touch or deflect.
+# Longest step of a search: as a share of the smallest gap; over the clearance where surfaces may touch or deflect.
+# Larger: fewer rounds, more steps without a film.
 ROOM, FREE_STEP = 0.6, 0.3
 
 
@@ -67,13 +72,13 @@ class Place:
     motion : (11,) array
         Motion of the journal (10,), and its axial position between the end faces, m.
     temperature, change : arrays
-        T and T* - T, K, of any shape; empty where no temperature is sought.
+        T and T* - T, K, of any shape; ``change`` is empty if no temperature is sought.
     evaluation, film : Evaluation, SolvedFilm
         Evaluation and solution of the steady film there.
     unbalance : (k,) array
         Force of the films and load at the temperature T*, N.
     slope : (k, k) array
-        Its derivative to the free coordinates, N/m.
+        Derivative of the unbalance to the free coordinates, N/m.
     faces : ThrustEvaluation or None
         Films on the end faces, which ``unbalance`` contains.
     """
@@ -89,7 +94,7 @@ class Place:
 
 
 class Balance:
-    """Steady films of a model, whose temperature and position are sought.
+    """Search for the temperature and, under a load, the position of a model's steady film.
 
     Parameters
     ----------
@@ -97,21 +102,21 @@ class Balance:
     where : str
         Name of the caller, for error messages.
     load : (k,) array, optional
-        Force on the journal in x and y, N, and with three components along z, which the faces carry. Without one the
-        journal's position is given.
+        Force on the journal in x and y, N; a third component is the axial force, which the faces carry. None: the
+        journal's position is prescribed.
     size : float, optional
-        Force in x and y that the unbalance is divided by, N; by default that of the load.
+        Force, N, over which the unbalance in x and y is measured; by default the load's size in x and y.
     faces : ThrustModel, optional
         Films on the end faces beside the journal's.
     held : History, optional
-        Memory whose temperature the film has; None: the temperature is sought.
+        Memory whose temperature is prescribed; None: the temperature is sought.
 
     Attributes
     ----------
     share : float
-        Share of the load that is to be carried.
+        Share of the load in the present search; below 1 in a continuation from smaller loads.
     count : int
-        Films tried.
+        Number of films evaluated.
     """
 
     def __init__(
@@ -136,7 +141,7 @@ class Balance:
         self.strongest = (0.0, 0.0)
 
     def temperature_of(self, near: History | None) -> np.ndarray:
-        """Temperature, K, at which a search starts beside a film with this memory."""
+        """Initial guess of the temperature, K: that of the memory ``near``, else that of the thermal option."""
         known = None if near is None else near.temperature
         return np.asarray(self.cold if known is None or self.thermal is None else known, dtype=float)
 
@@ -174,7 +179,7 @@ class Balance:
         if beside is not None:
             unbalance += beside.wrench[:k]
             slope += beside.tangent()[:k, self.free] if k else 0.0
-            if k > 2:  # plane faces at rest press nowhere: a step goes to the face that is to carry
+            if k > 2:  # plane faces at rest have no stiffness: with this one a step goes to the loaded face
                 slope[2, 2] = min(slope[2, 2], -SMALL * self._sizes[2] / self.model.bearing.radial_clearance)
         return Place(motion.copy(), T, change, evaluation, film, unbalance, slope, beside)
 
@@ -203,14 +208,15 @@ class Balance:
         resistance: float = 0.0,
         rounds: int = ROUNDS,
     ) -> Place:
-        """Film in balance from a motion (11,) and a temperature on, or the last of the search.
+        """Return the film in balance; if the search makes no progress, the last film that it reached.
 
-        It ends where it makes no progress, too. The film is the model's last.
+        ``motion`` (11,) and ``temperature`` are the initial guess. The returned film is the one that the model
+        evaluated last.
 
         Raises
         ------
         FilmError
-            Without a film at the start, nor at smaller eccentricities.
+            If there is no film at the initial guess; under a load, none at smaller eccentricities either.
         """
         here = self._first(motion, temperature)
         past: list[tuple[np.ndarray, np.ndarray]] = []
@@ -255,7 +261,7 @@ class Balance:
         return self.at(motion, temperature)
 
     def _scales(self, size: int) -> np.ndarray:
-        """Units (k + size,) of the unknowns: the clearance and a typical change of all temperatures, K."""
+        """Units (k + size,) of the unknowns: clearance for positions, typical change of all temperatures, K."""
         c = self.model.bearing.radial_clearance
         return np.append(np.full(len(self.free), c), np.full(size, TYPICAL_CHANGE * math.sqrt(max(size, 1))))
 
@@ -271,7 +277,10 @@ class Balance:
         return np.append(step, place.change * min(1.0, LARGEST_CHANGE / size)) / self._scales(place.change.size)
 
     def _moved(self, place: Place, step: np.ndarray) -> Place:
-        """The film a scaled step (k + m,) on, shortened to what the gaps leave and to four times the last change."""
+        """Evaluate the film after a scaled step (k + m,) from a place.
+
+        Moves are limited by the gaps, temperature changes to four times the change at the place.
+        """
         k, motion, size = len(self.free), place.motion.copy(), float(np.abs(place.change).max(initial=1e-300))
         step = step * self._scales(place.change.size)
         if k:
@@ -286,18 +295,17 @@ class Balance:
 def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float) -> np.ndarray:
     """Return the part of the next fixed-point step that Anderson's acceleration subtracts.
 
-    The step is ``damping`` times the iteration's change.
-
-    ``past``: points (k,) of two rounds and more with the changes (k,) that the iteration gave there, the newest last.
+    Without it the step would be ``damping`` times the iteration's change. ``past``: points (k,) of at least two rounds,
+    with the changes (k,) that the iteration gave there, the newest last.
     """
     dX, dF = (np.diff(np.array(values), axis=0).T for values in zip(*past))
     return (dX + damping * dF) @ np.linalg.lstsq(dF, past[-1][1], rcond=1e-12)[0]
 
 
 def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap, or a part of the clearance.
+    """Shorten a step (2,) so that it closes at most 60 % of the smallest gap of the rigid surfaces.
 
-    Where surfaces may touch or deflect, gaps of rigid surfaces limit nothing.
+    Where surfaces may touch or deflect, the step is shortened to 30 % of the clearance instead; in lobed bores to both.
     """
     c, touches, lobed = model.bearing.radial_clearance, model.effects.contacts or model.flexible, model.bearing.is_lobed
     if touches or lobed:
@@ -311,10 +319,10 @@ def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> n
 
 
 def part_that_closes(share: float, before: np.ndarray, after: np.ndarray, clearance: float, length: float) -> float:
-    """Part of a step between two motions that closes a share of the film of the rigid surfaces, 1 if none does.
+    """Part of a step between two motions that closes a share of the smallest gap of rigid surfaces; at most 1.
 
-    With the ends of the journal's axis at p, moved by d, and the smallest gap g = c - max |p|, the part s of the step
-    holds ``|p + s d| <= c - (1 - share) g``.
+    The ends of the journal's axis are at p and move by d, and the smallest gap is g = c - max |p|. The part is the
+    largest s with ``|p + s d| <= c - (1 - share) g`` at both ends.
     """
     (x, y, bx, by), (to_x, to_y, to_bx, to_by), part = before[:4].tolist(), after[:4].tolist(), 1.0
     ends = [(x + z * bx, y + z * by, to_x + z * to_bx, to_y + z * to_by) for z in (-0.5 * length, 0.5 * length)]
@@ -322,28 +330,30 @@ def part_that_closes(share: float, before: np.ndarray, after: np.ndarray, cleara
     for px, py, to_px, to_py in ends:
         dx, dy = to_px - px, to_py - py
         along, square, rest = px * dx + py * dy, dx * dx + dy * dy, farthest**2 - px * px - py * py
-        # not true for what is not finite; a gap that is closed limits nothing
+        # the comparison is False for numbers that are not finite; a gap that is closed limits nothing
         if 2.0 * along + square > rest >= 0.0:
             part = min(part, (math.sqrt(along * along + square * rest) - along) / square)
     return part
 
 
 def room_between_lobes(model: BearingModel, motion: np.ndarray, change: np.ndarray) -> float:
-    """Largest part of a change (4,) of the pose that uses up at most 60 % of any gap; between lobes a journal may be
-    farther off than the clearance."""
+    """Largest part of a change (4,) of the pose that closes at most 60 % of any gap of a lobed bore.
+
+    In a lobed bore the journal's eccentricity may exceed the clearance.
+    """
     gaps = gaps_of_arcs(model, motion)
     return min(1.0, ROOM / max(float((1.0 - gaps_of_arcs(model, motion[:4] + change) / gaps).max()), 1e-300))
 
 
 def gaps_of_arcs(model: BearingModel, motion: np.ndarray) -> np.ndarray:
-    """Gaps (n, m) between rigid surfaces at the pose that a motion begins with, m."""
+    """Gaps (n, m) between rigid surfaces at the pose ``motion[:4]``, m."""
     g, lobes = model.grid, model.effects.lobes
     away = np.array(g.directions[:2]).T @ (motion[:2, None] + motion[2:4, None] * g.z * g.reference_length)
     return np.asarray(model.bearing.radial_clearance * (1.0 + (0.0 if lobes is None else lobes.values)) - away)
 
 
 def limited_shift(faces: ThrustEvaluation, step: float) -> float:
-    """Shorten a step along the axis, m, so that it uses up at most 60 % of the smallest gap; a wall limits nothing."""
+    """Shorten an axial step, m, to 60 % of the smallest gap, or with a contact to 30 % of the clearance."""
     options = faces.model.bearing.thrust
     assert options is not None
     gap = ROOM * min(state.minimum_gap for state in faces.states)
@@ -375,7 +385,7 @@ def settled_history(
     Raises
     ------
     FilmError
-        Without a film, if the heat has no way out, or the temperature does not settle.
+        Without a film, without a sink for the heat, or if the temperature does not converge.
     """
     balance = Balance(model, where, faces=faces)
     if balance.thermal is None:
@@ -393,9 +403,10 @@ def settled_history(
 def history_at(
     model: BearingModel, motion: np.ndarray, where: str, near: History | None = None, faces: ThrustModel | None = None
 ) -> History | None:
-    """Settled temperature at ``motion`` and, with rates, the oil content of the steady film at rest there.
+    """History of the steady film at ``motion``; None if the film has neither a temperature nor a memory of its oil.
 
-    None if nothing remembers. ``near``: history of a film nearby, whose temperature saves time.
+    It has the temperature in balance with the film and, if the motion has rates, the oil content of the steady film at
+    the same pose without rates. ``near``: history of a film nearby, whose temperature is the initial guess.
     """
     history = settled_history(model, motion, near, where, faces)
     if not model.remembers_mass or not np.any(motion[4:8]):
@@ -410,9 +421,11 @@ def history_at(
 def evaluate_at(
     model: BearingModel, motion: np.ndarray, where: str, near: History | None = None, faces: ThrustModel | None = None
 ) -> Place:
-    """The steady film at ``motion``; `FilmError`, in the name of ``where``, if there is none that is oil.
+    """Return the steady film at ``motion``.
 
-    ``near`` as for `history_at`, ``motion`` and ``faces`` as for `settled_history`.
+    `FilmError`, in the name of ``where``, if there is none, if it is too hot for any oil or outside the oil's table, or
+    if the walls have grown by the whole clearance. ``near`` as for `history_at`, ``motion`` and ``faces`` as for
+    `settled_history`.
     """
     balance = Balance(model, where, faces=faces, held=history_at(model, motion, where, near, faces))
     found = balance.at(motion, balance.cold)

@@ -23,28 +23,33 @@ from exudyn_ehd.joint.balance.newton import (
 )
 from exudyn_ehd.status import FilmError, InputError, warn_user
 
-# Eccentricity ratio in the direction of the load of the second start of damped steps: inside, where neither a gap is
-# thin nor a cavity large. Larger ones are nearer to both.
+# Eccentricity ratio, in the direction of the load, from which a second search by damped steps starts. Larger: thinner
+# gaps and larger cavities at the start, with which damped steps fail more often.
 INSIDE = 0.3
-# Continuation from small loads: first and smallest step, shares of the load.
+# First and smallest step of the continuation from small loads, as shares of the load. Smaller: slower, fails less
+# often.
 FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.01
-# Smallest gap over the clearance below which a journal lies on the edge of an arc.
+# Smallest gap over the clearance below which an error message says that the journal lies on the edge of an arc.
 CLOSED = 0.01
 
 
 class LoadSearch(Balance):
     """Search for the position in which the steady film of a model carries a load.
 
-    Newton's method; where it fails, and the film has a temperature and none is known yet, for loads that grow from a
-    quarter of the whole, `climb`; where this finds none either, damped steps, first from the same place, then from
-    inside the bearing; in a lobed one also from where the film is as strong as the load, on the way on which the load
-    presses the journal onto the bore.
+    Searches in this order, until one succeeds:
+
+    1. Newton's method from the given motion;
+    2. `climb`, for loads that grow from a quarter of the whole: only if the film has a temperature and no film ``near``
+       is known. If it reaches a part of the load, the search ends here;
+    3. damped steps from the given motion;
+    4. damped steps from inside the bearing, `INSIDE`;
+    5. in a lobed bearing, damped steps from `opposed`.
     """
 
     def find(self, motion: np.ndarray, near: Place | None = None) -> Place:
-        """Position, from that of a motion on, in which the film carries the load.
+        """Return the film at the position in which it carries the load.
 
-        It starts at the temperature of the film ``near``.
+        The search starts at the position of ``motion`` and at the temperature of the film ``near``.
 
         Raises
         ------
@@ -71,14 +76,14 @@ class LoadSearch(Balance):
         return 10.0 * self.size / self.model.bearing.radial_clearance
 
     def tolerance(self, motion: np.ndarray) -> float:
-        """Share of the load that may be left of it at a motion."""
-        # rounding of the film's force, which a tiny load can't fall below
+        """Tolerance of the unbalance over the load."""
+        # round-off of the film's force, which limits the accuracy under tiny loads
         return max(LOAD_TOLERANCE, np.finfo(float).eps * self.model.bearing.reference_force(motion[8]) / self.size)
 
     def attempt(
         self, motion: np.ndarray, temperature: np.ndarray, resistance: float = 0.0, rounds: int = ROUNDS
     ) -> Place | None:
-        """The film of one search, see `solve`; None if it is not in balance, or hotter than any oil."""
+        """Return the film of one search, see `solve`; None if it is not in balance, or too hot for any oil."""
         tolerance = self.tolerance(motion)
         try:
             found = self.solve(motion, temperature, tolerance, resistance=resistance, rounds=rounds)
@@ -90,12 +95,12 @@ class LoadSearch(Balance):
         return found if self.is_balanced(found, tolerance) and not hot else None
 
     def loaded(self, motion: np.ndarray, ratio: float) -> np.ndarray:
-        """A motion with the journal moved to a share of the way on which the load presses it onto the bore."""
+        """Return the motion with the journal moved along the load, by a ``ratio`` of the way from centre to bore."""
         b, motion, direction = self.model.bearing, motion.copy(), self.load[:2] / self.size
         room = max(1.0 - 0.5 * b.length * float(np.hypot(*motion[2:4])) / b.radial_clearance, 0.0)
         motion[:2] = ratio * room * b.radial_clearance * direction
         if b.is_lobed and np.any(direction):
-            # the journal without a film lies farthest along the load, where no gap is closed
+            # without a film the journal would lie at the farthest position along the load with all gaps open
             gaps = gaps_of_arcs(self.model, motion * (np.arange(motion.size) > 1)).min(axis=1) / b.radial_clearance
             found = scipy.optimize.linprog(
                 -direction, np.transpose(self.model.grid.directions[:2]), gaps, bounds=(None, None)
@@ -105,7 +110,7 @@ class LoadSearch(Balance):
         return motion
 
     def opposed(self, motion: np.ndarray, temperature: np.ndarray) -> np.ndarray:
-        """A motion with the journal on this way, by bisection where its film is as strong as the load."""
+        """Return the motion of `loaded` at which the film's force has the size of the load, by bisection."""
         lower, upper = 0.0, 1.0
         for _ in range(2 * HALVINGS):
             ratio = 0.5 * (lower + upper)
@@ -118,7 +123,10 @@ class LoadSearch(Balance):
         return self.loaded(motion, lower)
 
     def climb(self, motion: np.ndarray) -> tuple[float, Place | None]:
-        """Largest share of the load to which films follow from smaller loads, and the film there if it is the whole."""
+        """Find the film by continuation from smaller loads.
+
+        Returns the largest share of the load that was reached, and the film if this is the whole load.
+        """
         first = motion.copy()
         first[:2] = first_guess(self.model.bearing, motion[8], FIRST_SHARE * self.load[:2], motion[2:4])
 
@@ -135,7 +143,7 @@ class LoadSearch(Balance):
         return share, found if share == 1.0 else None
 
     def _not_found(self, carried: float) -> FilmError:
-        """Error for a load that no position carries; ``carried``: what films carry that follow from smaller ones, N."""
+        """Error for a load that no position carries; ``carried``: largest load reached by `climb`, N."""
         if self.nearest is None:
             return self.failure
         place, b = self.nearest, self.model.bearing
@@ -171,7 +179,7 @@ class LoadSearch(Balance):
         )
 
     def _on_an_edge(self, place: Place) -> str:
-        """Reason why a journal on the edge of an arc finds no place; empty if it is elsewhere."""
+        """Return why a journal on the edge of an arc is not in balance; empty if it is not on an edge."""
         grid, gaps = self.model.grid, gaps_of_arcs(self.model, place.motion).min(axis=1)
         edges = np.argwhere(grid.edges == gaps.argmin())
         if not edges.size or gaps.min() > CLOSED * self.model.bearing.radial_clearance:
@@ -186,19 +194,20 @@ class LoadSearch(Balance):
 
 
 class LineSearch(LoadSearch):
-    """Search for the position of a journal whose film begins on the line of its largest gap, opposite to it.
+    """Search for the position of a journal whose film begins on the line of maximum gap, opposite to the eccentricity.
 
-    Of a bearing that is the same in all directions the film turns with the position: at the eccentricity e in the
-    direction phi the force is ``F = R(phi) F_0(e)``, with the rotation R and the force F_0 in the direction x. So the
-    model's line stays where it is, on -x, and
+    In a bearing that is the same in all directions, the film turns with the position. At the eccentricity e in the
+    direction phi the force is ``F = R(phi) F_0(e)``, with the rotation R and the force F_0 at the direction x. So all
+    films are evaluated at the direction x, with the line fixed on -x, and
 
         dF/de = R dF_0/de,    dF / (e dphi) = R J F_0 / e,    J: by a right angle,
 
-    along the eccentricity and across it; at the centre both limits are dF_0/de, the second one turned by J.
+    are the derivatives along the eccentricity and across it. At the centre both are dF_0/de, the second one turned by
+    J.
     """
 
     def at(self, motion: np.ndarray, temperature: np.ndarray) -> Place:
-        """The steady film at a motion (11,), whose journal the film sees in the direction x."""
+        """Evaluate the steady film at a motion (11,), with the position turned to the direction x."""
         e, turned = float(np.hypot(*motion[:2])), motion.copy()
         turned[:2] = e, 0.0
         place = super().at(turned, temperature)
@@ -211,7 +220,7 @@ class LineSearch(LoadSearch):
 
 
 def require_turning(bearing: JournalBearing, load: np.ndarray, tilt: np.ndarray) -> None:
-    """Raise `InputError` where the film of a bearing with `MaximumGap` does not turn with the journal's position."""
+    """Raise `InputError` if the film of a bearing with `MaximumGap` does not turn with the journal's position."""
     around = [profile for profile in bearing.profiles if not isinstance(profile, Crown | EdgeRelief | AxialProfile)]
     reasons = {
         "load=(0, 0): the gap is the same all around": not np.any(load),
@@ -240,12 +249,12 @@ def turning(motion: np.ndarray) -> np.ndarray:
 def continued(
     reach: Callable[[float, Place | None, bool], Place | None], step: float, shortest: float
 ) -> tuple[float, Place | None]:
-    """Follow films over a parameter from 0 to 1, by steps that are halved where one is not reached.
+    """Follow films over a parameter from 0 to 1; a step is halved if it leads to no film.
 
     Parameters
     ----------
     reach : function
-        Of the parameter, the last film (None for the first), and whether the step can't be halved any more; returns the
+        Function of the parameter, of the last film (None at first), and of a flag for the shortest step; it returns the
         film there, or None.
     step, shortest : float
         First and shortest step.
@@ -253,7 +262,7 @@ def continued(
     Returns
     -------
     parameter, film
-        The last that was reached; 0 and None without any.
+        Last parameter reached, with its film; 0 and None if no film was found.
     """
     at, here = 0.0, None
     while at < 1.0:
@@ -269,9 +278,10 @@ def continued(
 
 
 def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:
-    """Eccentricity (2,) in m from the mean of the short and the long bearing's load, both half Sommerfeld.
+    """Initial guess of the eccentricity (2,), m, for a film that carries ``force``.
 
-    The guess only saves steps. It stays inside the gap that the tilt leaves.
+    Its load combines those of the short and of the long bearing, both half Sommerfeld: s l / (s + l). The eccentricity
+    stays within the clearance that the tilt leaves.
     """
     target = float(np.hypot(*force)) / bearing.reference_force(omega)
     ratio = (0.5 * bearing.length / bearing.journal_radius) ** 2
@@ -290,9 +300,10 @@ def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: 
     return eps * bearing.radial_clearance * np.array([math.cos(angle), math.sin(angle)])
 
 
-# Start on the load's side, where the film is thinnest: eccentricity ratio. Larger ones are nearer to a closed gap.
+# Eccentricity ratio, in the direction of the load, from which another position is searched. Larger: nearer to a closed
+# gap.
 LOADED = 0.9
-# Distance over the clearance up to which two positions are one.
+# Distance over the clearance up to which two positions count as the same.
 SAME_PLACE = 1e-3
 STEADINESS = (
     "has a negative determinant: a journal does not stay there",
@@ -302,11 +313,12 @@ STEADINESS = (
 
 
 def steadiest(search: LoadSearch, found: Place) -> Place:
-    """The position found, or a steadier one that carries the load too; a warning names all that are known.
+    """Return the position found, or a steadier one that carries the load too; a warning lists all that were found.
 
-    A journal stays where the stiffness K is positive definite, and leaves a place where its determinant is
-    negative, whatever the damping. Others are looked for from the load's side and from inside: where K is not
-    positive definite, and supply areas, tilt or a memory of the oil may give the load several positions.
+    A journal stays where the stiffness K is positive definite. It leaves a place where the determinant of K is
+    negative, whatever the damping. Other positions are searched for if the determinant is negative. They are also
+    searched for if K is not positive definite and supply areas, tilt or a memory of the oil allow several positions.
+    Films with a temperature are not checked.
 
     Parameters
     ----------

@@ -1,12 +1,13 @@
-"""Resolution of a film's pressure peak by its grid, seen from the film alone.
+"""Resolution of a film's pressure peak by its grid, estimated from one film.
 
-Around, the width of the peak at half its height decides: with ``columns`` intervals across it the peak pressure of an
-aligned journal is off by up to ``0.5 / columns^2``, according to where it lies between two columns (measured at L/D
-0.25 to 2, minimum film thickness 0.005 to 0.5 of the clearance, from two intervals on).
+Around the bore, the width of the peak at half its height decides. With ``columns`` intervals across this width, the
+relative error of the peak pressure of an aligned journal is up to ``0.5 / columns^2``; it depends on where the peak
+lies between two columns. This was measured at L/D 0.25 to 2 and a minimum film thickness of 0.005 to 0.5 of the
+clearance, for two and more intervals.
 
-Along, the film of a tilted journal grows from its end, and the pressure rises by ``int dz / h^3``, most of it where the
-film is less than twice as thick as on the end. The film thickness one interval before the end over that on the end,
-``narrowing``, decides where the peak lies next to that end:
+Along the bearing, the film of a tilted journal grows from its end. The pressure rises by ``int dz / h^3``, mostly where
+the film is less than twice as thick as on the end. If the peak lies next to that end, its error depends on
+``narrowing``, the film thickness one interval before the end over that on the end:
 
 =========  ===  ===  ====  ====  ====  ====
 narrowing  1.5  2.2  3     4.5   7     17
@@ -14,9 +15,9 @@ error, %   5    7    25    45    45    65
 =========  ===  ===  ====  ====  ====  ====
 
 Largest errors of the peak pressure on 10 intervals of ``stretch=0.75``, of seeded random films of rigid bearings with
-SwiftStieber. The peak is too low from 2.2 on. `tests/joint/balance/test_resolution.py` measures who is warned, and what
-the named grids are worth. Thrust faces and balls have grids of their own, which nothing here judges; an audit compares
-a ball's with finer ones.
+SwiftStieber. From a narrowing of 2.2 on the computed peak is too low. `tests/joint/balance/test_resolution.py` measures
+which films cause a warning, and the errors on the grids that it names. The grids of thrust faces and balls are not
+judged here; an audit compares a ball's grid with finer ones.
 """
 
 from __future__ import annotations
@@ -30,17 +31,19 @@ from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.joint.solved_film import SolvedFilm
 from exudyn_ehd.status import GridWarning, warn_user
 
-# Intervals across the peak around below which, and narrowing from which on, the peak pressure is off by some 5 %; rows
-# from an end up to which a peak is that end's.
+# Intervals across the peak below which, and narrowing above which, the error of the peak pressure is above some 5 %: a
+# warning. Number of rows from an end up to which the peak counts as next to that end.
 FEWEST, STEEPEST, NEAR = 3.2, 2.15, 2
-# Properties of a wanted grid, whose peak pressure is off by 2 %: intervals across the peak; narrowing less one; stretch
-# of the rows, whose end intervals are then 0.235 / n_z of half the length; least number of rows.
+# Properties of the grid that a warning names, with an error of 2 % of the peak pressure: intervals across the peak;
+# narrowing less one; stretch of the rows; length of the end interval with this stretch, times n_z over half the length;
+# least number of rows.
 ENOUGH, GENTLE, STRETCH, END_INTERVAL, FEWEST_ROWS = 6.0, 0.4, 0.95, 0.235, 48
-# Narrowing up to which the film is even along the bearing; from 1.15 on its crest between two rows costs up to 4 %.
+# Narrowing up to which the film counts as even along the bearing, so that its rows are kept. At a limit of 1.15 the
+# peak, which lies between two rows, would have an error of up to 4 %.
 EVEN = 1.02
 # Width of a peak at half its height over the square root of 2 h / h'', for films thinner than a tenth of the clearance.
 PEAK_WIDTH = 1.25
-# Sizes from which on a wanted grid takes seconds for one film.
+# Largest grid that a warning names. Beyond it one film takes seconds.
 MOST_COLUMNS, MOST_ROWS = 2000, 200
 
 
@@ -56,7 +59,7 @@ class Resolution(NamedTuple):
     growth : float
         The larger such ratio of both ends, wherever the peak lies.
     wanted : FiniteLength or None
-        A grid whose peak pressure is off by 2 %; None where it would be too large, or for another film model.
+        Grid with an error of 2 % of the peak pressure; None if it would be too large, or for another film model.
     """
 
     columns: float
@@ -67,14 +70,14 @@ class Resolution(NamedTuple):
 
     @property
     def is_coarse(self) -> bool:
-        """Return whether the peak pressure may be off by more than 5 %."""
+        """Return whether the error of the peak pressure may exceed 5 %."""
         return self.columns < FEWEST or self.narrowing > STEEPEST
 
 
 def resolution(film: SolvedFilm) -> Resolution:
     """Resolution of the pressure peak of a solved film."""
     lower, upper = film.grid.seals or (None, None)
-    rows = slice(int(lower is not None), film.grid.z.size - int(upper is not None))  # none outside of seals
+    rows = slice(int(lower is not None), film.grid.z.size - int(upper is not None))  # without rows outside of seals
     P, H, z = film.oil.P[:, rows], film.solver.H[:, rows], film.grid.z[rows]
     n, last = P.shape[0], P.shape[1] - 1
     i, j = divmod(int(P.argmax()), last + 1)
@@ -94,7 +97,10 @@ def resolution(film: SolvedFilm) -> Resolution:
 def _wanted(
     film: SolvedFilm, across: float, narrowing: float, k: int, row: int, interval: float
 ) -> FiniteLength | None:
-    """Grid that resolves a peak of some intervals across, next to the thinnest film (k, row) of an end."""
+    """Grid that resolves a peak which now spans ``across`` intervals.
+
+    (k, row) is the vertex with the thinnest film of an end, ``interval`` the scaled length of the interval before it.
+    """
     own, ring, (n, _), H = film.parts.bearing.sized_film, film.parts.bearing.columns, film.grid.shape, film.solver.H
     if not isinstance(own, FiniteLength):
         return None
@@ -128,7 +134,7 @@ def coarse_film(found: Resolution, where: str) -> str:
 
 
 def is_judged(film: SolvedFilm) -> bool:
-    """Return whether a film has a grid that a warning can name, and carries more than its contact does."""
+    """Return whether a film has a `FiniteLength` grid, and its contact carries at most half of the load."""
     contact = 0.0 if film.pressing is None else np.hypot(*film.pressing.integrals[:, :2].sum(axis=0))
     carried = math.hypot(*film.loads.wrench[:2]) / film.grid.reference_length**2
     return isinstance(film.parts.bearing.film, FiniteLength) and bool(contact <= 0.5 * carried)

@@ -2,7 +2,7 @@
 
 Module map
 ----------
-shapes       displacement of the bore on the film's grid; transfer between its vertices and the faces of the bore
+shapes       displacement of the bore on the film's grid; transfer between the grid's vertices and the bore's faces
 equilibrium  bore in balance with its film
-solid        the same for the mesh of a nodal bush, at any strain
+solid        mesh of a nodal bush in balance with its film, at any strain
 """

@@ -1,15 +1,16 @@
 """Steady elastohydrodynamics.
 
-The bore's coordinates in equilibrium with the film, and the tangent of a bore that follows.
+The bore's coordinates in equilibrium with the film, and the tangent of the wrench with a bore that follows the journal.
 
-With the bush's stiffness K the residual is ``r(q) = K q - Q(q)``; Newton with the exact ``K - dQ/dq``. A pressure
-falls with the gap it opens, and falls the less the wider the gap: from a small q on Newton's steps stop short of the
-solution and stay on the safe side.
+With the bush's stiffness K the residual is ``r(q) = K q - Q(q)``; Newton's method uses the exact ``K - dQ/dq``. The
+pressure falls as it opens the gap, and falls less in a wider gap. So Newton's steps from a small q end before the
+solution and do not overshoot.
 
-A bore with thin parts that the film bends or tilts, as tongues and pads, has several equilibria, and Newton's method
-jumps between them or nowhere. Where it does not go straight to one, the one counts to which the bore comes from where
-it is undeformed if it moves as slowly as a viscous one, ``K (q + tau dq/dt) = Q(q)``: backward Euler, each step with
-the tau over time h that the last one's success allows, and Newton's method from where the motion dies down.
+A bore with thin parts that the film bends or tilts, such as tongues and pads, has several equilibria. Newton's method
+may jump between them or fail. If it does not converge by full steps, the equilibrium is defined by a slow motion: that
+of a viscous bore, ``K (q + tau dq/dt) = Q(q)``, from the undeformed state to rest. The motion is integrated by backward
+Euler (pseudo-transient continuation). tau over the step h grows if a step fails and falls if it succeeds. Newton's
+method starts from the state at which the motion has nearly come to rest.
 """
 
 from __future__ import annotations
@@ -22,37 +23,40 @@ from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
 from exudyn_ehd.status import Status
 
-# Continuation to the prescribed position: step below which it ends, and growth of the step after a success.
+# Continuation to the prescribed position: smallest step, below which it fails, and growth of the step after a success.
+# Smaller, and nearer to 1: slower, fails less often.
 SMALLEST_PART, LONGER = 1e-4, 1.5
-# Steps of Newton's method and what they may leave of the residual, over the load; of a viscous bore's step likewise.
+# Largest number of Newton's steps, and tolerance of the residual over the load: for an equilibrium, and for a step of a
+# viscous bore.
 LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE, MOVING_STEPS, MOVING_TOLERANCE = 60, 1e-11, 10, 1e-5
-# Pseudo-transient continuation of a viscous bore: slowness at its start and its end, share of q that it may leave to
-# Newton's method; trials after which no continuation is begun or continued.
+# Pseudo-transient continuation of a viscous bore: tau / h at its start; tau / h at which it fails; relative change of q
+# in a step from which on Newton's method is tried; number of film solves after which it is not begun or ends.
 SLOWEST, LARGEST_SLOWNESS, NEAR, LARGEST_EFFORT = 10.0, 1e9, 0.02, 600
-# Trials after which the whole way ends, and a straight one.
+# Largest number of film solves of a whole search, and of one that ends where Newton's method has to halve a step.
 LARGEST_WAY, STRAIGHT_WAY = 3000, 60
 
 
 class Elasticity:
-    """Stiffness of the bore's coordinates in a steady state: a constant matrix.
+    """Constant stiffness of the bore's coordinates in a steady state.
 
-    `exudyn_ehd.joint.bore.solid` has the stiffness of a solid at any strain.
+    The stiffness of a solid at any strain is in `exudyn_ehd.joint.bore.solid`.
 
     Parameters
     ----------
     stiffness : (k, k) array
         K, N/m.
     load : (k,) array or float
-        Generalised force on the bore besides the film's, N.
+        Generalised force on the bore in addition to the film's, N.
 
     Attributes
     ----------
     failure : str
-        Reason why the last `settle` found no balance, and a remedy; empty if it did, or if the film is the reason.
+        Reason why the last `settle` found no balance, and a remedy; empty if it found one, or if the film failed.
     reached : float, (k,) array
-        Largest part of the last place of `settle` with an equilibrium on the way, and its coordinates.
+        Largest fraction of the prescribed eccentricity and tilt with an equilibrium in the last `settle`, and the
+        bore's coordinates there.
     straight : bool
-        `settle` gives up where Newton's method does not go straight to a balance: for searches that can come nearer.
+        True: `settle` fails where Newton's method has to halve a step. For searches that then shorten their own step.
     """
 
     failure = ""
@@ -70,7 +74,10 @@ class Elasticity:
         return np.linalg.solve(self.stiffness - softening, rhs)
 
     def tangent(self, evaluation: NodalEvaluation, exact: bool) -> np.ndarray:
-        """d (wrench, Q) / d motion (6 + k, 10 + 2 k) of a film after `settle`; good enough for a search, or exact."""
+        """d (wrench, Q) / d motion (6 + k, 10 + 2 k) of a film after `settle`.
+
+        Not ``exact``: an approximation that suffices for a search.
+        """
         return evaluation.tangent()
 
     def settle(
@@ -114,7 +121,7 @@ Result = TypeVar("Result", bound=BoreEvaluation, covariant=True)
 
 
 class FilmOnBore(Protocol[Result]):
-    """A bearing model whose bore has coordinates, and what resists them."""
+    """A bearing model whose bore has coordinates, with the elasticity that resists them."""
 
     bore: Bore
     elasticity: Elasticity
@@ -131,12 +138,12 @@ def bore_equilibrium(
 ) -> tuple[Result | None, tuple[float, np.ndarray]]:
     """Evaluate with the bore in equilibrium.
 
-    The place is approached in parts where the rigid surfaces would touch, each from where the last two lead: a thin
-    film leaves the bore no room to stay behind.
+    If the direct search fails, eccentricity and tilt are approached in steps. Each step starts from coordinates that
+    are extrapolated from the last two, since in a thin film the gap closes if the bore does not follow.
 
-    ``film``: history, step and spin as for `BearingModel.evaluate`; ``start``: coordinates (k,) to begin with, if
-    they leave a gap, before the undeformed bore. Returns the evaluation or None, and the largest part of the place with
-    an equilibrium on the way, with its coordinates (k,).
+    ``film``: history, step and spin as for `BearingModel.evaluate`; ``start``: coordinates (k,) to try before the
+    undeformed bore. Returns the evaluation or None, and the largest fraction of eccentricity and tilt with an
+    equilibrium, with its coordinates (k,).
     """
     newton, most = Newton(model, motion, film), STRAIGHT_WAY if model.elasticity.straight else LARGEST_WAY
     found = newton.solve(start, 1.0, straight=True) if start.any() else None
@@ -164,7 +171,7 @@ class Newton(Generic[Result]):
         self.trials = 0
 
     def settle(self, q: np.ndarray, part: float) -> Result | None:
-        """Find the balance by full Newton steps, else as a viscous bore comes to rest from q, else by halved steps."""
+        """Find the balance by full Newton steps from q; else by the motion of a viscous bore; else by halved steps."""
         found = self.solve(q, part, straight=True)
         if found is None and self.trials < LARGEST_EFFORT and not self.model.elasticity.straight:
             found = self._come_to_rest(q, part) or self.solve(q, part)
@@ -186,10 +193,10 @@ class Newton(Generic[Result]):
         return None
 
     def solve(self, q: np.ndarray, part: float, slowness: float = 0.0, straight: bool = False) -> Result | None:
-        """Equilibrium from coordinates q (k,) with the pose scaled by ``part``; None if none was found.
+        """Return the equilibrium found from coordinates q (k,) with the pose scaled by ``part``; None without one.
 
-        ``straight``: nor where a step has to be halved. With a slowness s, tau over the time of a step, what a viscous
-        bore has reached after the step: ``K (q' + s (q' - q)) = Q(q')``.
+        ``straight``: None also if a step has to be halved. With a ``slowness`` s = tau / h, the result is the state q'
+        of a viscous bore after one step: ``K (q' + s (q' - q)) = Q(q')``.
         """
         model, elasticity, k, old, held = self.model, self.model.elasticity, q.size, q, 1.0 + slowness
         full = np.concatenate((self.motion[:MOTION_SIZE], q, np.zeros(k)))
@@ -204,7 +211,7 @@ class Newton(Generic[Result]):
         residual = evaluation.bore.load + elasticity.load - elasticity.force(q)
         error, last = float(np.linalg.norm(residual)), np.inf
         for _ in range(steps):
-            # stop at the tolerance, or where rounding keeps a converged residual from falling
+            # stop at the tolerance, or if round-off keeps a converged residual from falling
             if error <= tolerance * scale or (error <= 1e-8 * scale and error > 0.5 * last):
                 return evaluation
             softening = evaluation.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
@@ -231,9 +238,8 @@ class Newton(Generic[Result]):
 def condensed_tangent(tangent: np.ndarray, elasticity: Elasticity) -> np.ndarray:
     """d wrench / d motion (6, 10) with a massless bore in equilibrium, to first order in the rates.
 
-    From ``tangent`` (6 + k, 10 + 2 k): with A = (K - dQ/dq)^-1 the bore follows
-    the journal as ``dq = A Q_m dm``; its rate follows the pose's rate likewise and acts through squeeze on wrench and
-    bore.
+    From ``tangent`` (6 + k, 10 + 2 k): with A = (K - dQ/dq)^-1 the bore follows the journal by ``dq = A Q_m dm``. The
+    bore's rate follows the rate of the pose in the same way; through the squeeze it acts on the wrench and on the bore.
     """
     T, k, M = tangent, len(elasticity.stiffness), MOTION_SIZE
     softening = T[6:, M : M + k]

@@ -2,9 +2,9 @@
 
 ``delta = S q``, its rate ``S q_t``, and generalised loads ``S^T (p A)``.
 
-Modal and nodal bushes differ in S (and in what resists q) only. delta > 0 points outward and opens the gap.
-Displacements are those in the joint frame, q in m; loads are carried back by the transpose, so that the film's work
-on the bush is its work on q.
+Modal and nodal bushes differ only in S and in the elasticity that resists q. delta > 0 points outward and opens the
+gap. Displacements are in the joint frame, q in m. Loads follow from the transpose of S, so that the film's work on the
+bush equals its work on q.
 
 Transfer between the film's vertices and the faces of a bore, pressures as loads and displacements as gaps: the pressure
 is interpolated along every line of vertices, ``p(x) = sum_v p_v L_v(x)``, by the cubic through the four vertices around
@@ -12,20 +12,21 @@ x. With the vertices' integration weights A_v and the bore's shape functions N
 
     load of a node  = int p N dA = sum_v p_v A_v S_v,    S_v = int L_v N dA / A_v,
 
-and the bore displaces the film's vertices by the same means S: the film's work on the bore is the bore's. The integrals
-are Gauss sums over the film's intervals, parted where faces meet. Shape functions at the vertices alone are point
-loads where an interval is no smaller than faces: the bore's displacement is then a saw-tooth.
+and the displacement of the film's vertices is the mean of the bore's displacement with the same weights S. So the
+film's work on the vertices equals its work on the bore. The integrals are Gauss sums over the film's intervals, divided
+where faces meet. Shape functions at the vertices alone would not do: on intervals that are not smaller than the faces
+they act as point loads, and the bore's displacement becomes a saw-tooth.
 
-Around the bore, with even steps, the integrals of the cubics are the weights, their first three moments vanish, and S
-takes the mean of a displacement to fourth order. Along it A_v are the film's own weights, on vertices that are
-stretched between ends. There the L_v are changed as little as possible, by differences of the pressure over four
-vertices, of which those that vanish where it is linear come first, until ``int L_v dz = A_v`` and
-``int L_v z dz = A_v z_v``: force and moments of the loads are those of the film's wrench to rounding, rigid motions are
-taken exactly, and uniform pressures load the bore uniformly.
+Around the bore, with even steps, the integrals of the cubics equal the vertices' weights and their first three moments
+vanish. S is then a displacement to fourth order. Along the bore, A_v are the film's weights on vertices that are not
+evenly spaced. There the L_v are changed as little as possible, until ``int L_v dz = A_v`` and
+``int L_v z dz = A_v z_v``. The changes are differences of the pressure over four vertices, preferably those that vanish
+for a linear pressure. Force and moments of the loads then are those of the film's wrench to round-off, rigid motions
+are exact, and uniform pressures load the bore uniformly.
 
-On the ends, where bores constrict a film, S is the displacement itself, and likewise next to edges at which faces end,
-as of slots and holes: no mean of both sides of a slot is the bore's. `end_means` has the loads of pressures that do not
-vanish on the ends.
+On the ends, where bores constrict a film, S is the local displacement. S is the local displacement also next to edges
+at which faces end, as at slots and holes, because a mean over both sides of a slot is no displacement of the bore.
+`end_means` gives the loads of pressures that do not vanish on the ends.
 """
 
 from __future__ import annotations
@@ -44,14 +45,16 @@ from exudyn_ehd.solid.journal.modes import JournalModes
 from exudyn_ehd.solid.unrolled import Surface, directed
 from exudyn_ehd.status import ROUNDING, SMALL
 
-# Vertices of an interpolation. Gauss points and weights of a panel: exact for cubics times quadratic shape functions.
+# Number of vertices of an interpolation. Gauss points of a panel are exact for cubics times quadratic shape functions.
 STENCIL = 4
-# Share of an interval that is too short for a panel; round-off of values of order one.
+# Fraction of an interval below which a panel is omitted; absolute value below which an entry of a matrix is round-off.
 TOUCHING, SMALLEST = 1e-3, 1e-14
+# Size of the change in `_along` that does not vanish for linear pressures; that of the others is 1. Smaller: it is used
+# less.
 LINEAR = 0.03
-# Distance, as a share of half the length, within which an edge lies on the film's end.
+# Distance, as a fraction of half the length, within which an edge counts as lying on the film's end.
 RIM = 1e-4
-# Points that are looked up at once, times faces.
+# Largest number of points times faces that are searched at once. Larger: more memory.
 LARGEST_BLOCK = 2e7
 
 
@@ -86,10 +89,10 @@ def end_means(faces: Surface, grid: FilmGrid) -> csr_matrix:
 def separate_means(
     grid: FilmGrid, edges: np.ndarray
 ) -> tuple[np.ndarray, csr_matrix, np.ndarray, np.ndarray, np.ndarray]:
-    """The means of shapes that are a wave around times a profile along, smooth but for edges (e,) of the profile, m.
+    """Means for shapes that are the product of a wave around and of a profile along z with edges (e,), m.
 
-    Returns angles (p,) and the means (n, p) around; places (q,), m, and the means (m, q) along; those (2, q) of
-    `end_means`.
+    Returns the angles (p,) of points around and the means (n, p); the places (q,) of points along, m, and the means
+    (m, q); the means (2, q) along for `end_means`.
     """
     z, along, weight = _along(grid, edges / grid.reference_length)
     theta, around = _around(grid, np.zeros(0))
@@ -104,7 +107,10 @@ def _end_courses(z: np.ndarray, weight: np.ndarray) -> np.ndarray:
 def _values(
     faces: Surface, grid: FilmGrid, theta: np.ndarray, z: np.ndarray, chosen: np.ndarray | None = None
 ) -> csr_matrix:
-    """Values (p, nodes) at points theta x z, scaled z, or at those with the flat numbers ``chosen``."""
+    """Values (p, nodes) of the shape functions at the points theta x z, scaled z.
+
+    ``chosen``: flat indices of the points, if not all.
+    """
     at = np.arange(theta.size * z.size) if chosen is None else chosen
     parts = np.array_split(at, ceil(at.size * faces.count / LARGEST_BLOCK))
     places = grid.reference_length * z
@@ -121,7 +127,7 @@ def _pruned(matrix: csr_matrix) -> csr_matrix:
 def _near_rims(faces: Surface, grid: FilmGrid) -> np.ndarray:
     """Vertices (n m,) that share an interval of their interpolation with an edge at which faces end.
 
-    There a bore may be torn. Edges on the ends of the film or beyond do not count.
+    At such edges the displacement of a bore may jump. Edges on the ends of the film or beyond do not count.
     """
     R, m, reach = grid.reference_length, grid.z.size, STENCIL // 2
     end = float(grid.z[-1]) * (1.0 - RIM)
@@ -183,7 +189,7 @@ def _along(grid: FilmGrid, cuts: np.ndarray) -> tuple[np.ndarray, np.ndarray, np
         value[:, near] = _lagrange(scaled, x)
         slope = scaled - scaled.mean()
         change[0, near] = LINEAR * slope / np.linalg.norm(slope)
-        # what vanishes where the pressure is linear
+        # differences that vanish for a linear pressure
         change[1:, near] = np.linalg.svd(np.vander(scaled, 2).T)[2][2:]
         places.append(edges[j] + width * x)
         weights.append(width * weight)
@@ -207,7 +213,9 @@ def _with_moments(
     changes: np.ndarray,
     on_ends: bool,
 ) -> np.ndarray:
-    """Interpolation (p, m) with the smallest changes that make its integrals the weights, centred on the vertices.
+    """Return the interpolation (p, m) with the smallest changes for which its integrals are the vertices' weights.
+
+    The first moments of the integrals about the vertices vanish.
 
     Parameters
     ----------
@@ -220,13 +228,13 @@ def _with_moments(
     changes : (p, c, m) array
         Possible additions to it at each point.
     on_ends : bool
-        The first and the last vertex count for nothing.
+        True: no conditions for the first and the last vertex.
     """
     at, share = points
     counts = slice(1, -1) if on_ends else slice(None)
     moments = np.stack([np.ones((at.size, z.size)), (at[:, None] - z) / np.gradient(z)])
     lack = np.stack([area, 0.0 * area]) - np.einsum("p,kpm,pm->km", share, moments, L)
-    # a point's change in units that make equal fields equally large
+    # divided by the root of the point's weight, so that equal changes of a field have the same size on all panels
     root = np.sqrt(share)
     lack, wanted = lack[:, counts].ravel(), np.einsum("p,kpm,pcm->kmpc", root, moments, changes)[:, counts]
     matrix = wanted.reshape(lack.size, changes.shape[0] * changes.shape[1])
@@ -246,7 +254,7 @@ class Bore(abc.ABC):
     own : int
         Number of the bore's coordinates; those of an elastic journal follow.
     twist : (k,) array or None
-        Loads of a moment of 1 Nm of the film about the axis, 1/m; None: none.
+        Generalised loads on the coordinates by a moment of 1 Nm of the film about the axis, 1/m; None: zero.
     """
 
     def __init__(self, grid: FilmGrid, shapes: np.ndarray | csr_matrix, own: int) -> None:
@@ -296,7 +304,7 @@ def _centres(grid: FilmGrid) -> np.ndarray:
 
 
 class ModalBore(Bore):
-    """Bore that moves in modes, journal that does, or both: what either opens the gap by adds up.
+    """Bore that moves in modes, journal that moves in modes, or both; their openings of the gap are added.
 
     ``S = [S_bore, S_journal]``, ``q`` likewise.
 
@@ -305,7 +313,7 @@ class ModalBore(Bore):
     modes : BoreModes, ReducedBore or None
     grid : FilmGrid
     journal : JournalModes or None
-        Its modes follow those of the bore.
+        Modes of the journal, whose coordinates follow those of the bore.
 
     Attributes
     ----------
@@ -314,7 +322,7 @@ class ModalBore(Bore):
     modes : BoreModes, ReducedBore or None
     journal : JournalModes or None
     twist : (k,) array or None
-        As in `Bore`. A reduced body gets the film's moment by the mean motion of its bore.
+        As in `Bore`; None for a reduced body, which gets the film's moment through the mean motion of its bore.
     """
 
     def __init__(
@@ -367,7 +375,7 @@ class NodalBore(Bore):
     Attributes
     ----------
     values : csr matrix (n m, nodes)
-        Of `exudyn_ehd.joint.bore.shapes.vertex_means`.
+        S without directions, from `vertex_means`.
     """
 
     shapes: csr_matrix

@@ -1,14 +1,14 @@
-"""The bore of a nodal bush in balance with its film: the solid's own static equilibrium, at any strain.
+"""Bore of a nodal bush in balance with its film: static equilibrium of the bush's solid, at any strain.
 
 With the displacements u of the mesh, its internal forces f(u) and the film's forces F on the nodes of the bore
 
     f(u) = F(u)    with the outer surface held,
 
-F as on the same nodes in a joint. The solid is linear about a state u0, ``f(u0) + K (u - u0)``; condensed on the x and
-y displacements q of the bore's nodes it resists the film's pressure as ``K_c (q - q_free)``, which
-`exudyn_ehd.joint.bore.equilibrium` balances, far from the solution too. From there the same K, with the film's slope
-S, corrects u by ``(K - S) du = F - f(u)``: each correction costs one film. Where they contract too slowly the solid is
-made linear about the state that they have reached, and so on.
+F as on the same nodes in a joint. The solid is linearised about a state u0, ``f(u0) + K (u - u0)``. Condensed on the x
+and y displacements q of the bore's nodes, it resists the film's pressure by ``K_c (q - q_free)``.
+`exudyn_ehd.joint.bore.equilibrium` finds the balance of this linear solid with the film. From there the same K, with
+the film's derivative S = dF/du, corrects u by ``(K - S) du = F - f(u)``; each correction costs one film. If the
+corrections contract too slowly, the solid is linearised again about the state that they have reached.
 """
 
 from __future__ import annotations
@@ -31,15 +31,16 @@ from exudyn_ehd.solid.linear import sparse_factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import Status
 
-# Residual over the film's forces that counts as balanced if round-off lets it fall no more.
+# Residual over the film's forces that counts as balanced if it does not fall further because of round-off.
 ROUNDING = 1e-8
-# Largest ratio of successive residuals of the corrections, and those up to which their K serves a search and a tangent.
+# Contraction rates of the corrections: above the first the solid is linearised again; up to the second and the third
+# the present K is used for an approximate and for an exact tangent. Smaller: more factors, more accurate tangents.
 SLOWEST, NEARBY, EXACT = 0.3, 0.05, 1e-3
-# Corrections by one K, or states at which the solid is made linear in a search, and parts of a step that lead to one.
+# Largest number of corrections by one K, and of linearisations in a search; largest number of halvings of a step.
 CORRECTIONS, HALVINGS = 40, 8
-# Unit loads that the solid answers at a time.
+# Number of unit loads that are solved for at once. Larger: more memory.
 COLUMNS = 256
-# Stiffness of held nodes of the bore, times the largest stiffness of the others.
+# Stiffness of held nodes of the bore over the largest stiffness of the others. Smaller: held nodes move more.
 HELD = 1e6
 NO_BALANCE = (
     "the solid finds no balance with the film's load, which may lie above a limit point; take NeoHooke(...) for "
@@ -71,7 +72,7 @@ class SolidElasticity(Elasticity):
         free = np.ones(mesh.nodes.shape, dtype=bool)
         free[mesh.outer.nodes] = False
         self._free = free.ravel()
-        # places of the bore's x and y among the free coordinates, of those that are free themselves
+        # which x and y of the bore's nodes are free, and their indices among the free coordinates
         self._moves = free[mesh.bore.nodes, :2].ravel()
         self._places = (np.cumsum(self._free) - 1)[(3 * mesh.bore.nodes[:, None] + np.arange(2)).ravel()][self._moves]
         self.displacements, self._beside = np.zeros(free.shape), np.zeros(free.shape)
@@ -84,10 +85,11 @@ class SolidElasticity(Elasticity):
         return self.stiffness @ (q - self._q_free)
 
     def tangent(self, evaluation: NodalEvaluation, exact: bool) -> np.ndarray:
-        """Return `Elasticity.tangent` by the stiffness of a nearby state, with radial loads only.
+        """Return `Elasticity.tangent`.
 
-        Or that of all forces on the bore's nodes, with the solid linear about the last balance. Forces along z act as
-        the loads on q that displace the bore alike.
+        Not ``exact``: with radial loads only, and with the stiffness of a nearby state. ``exact``: with all forces on
+        the bore's nodes, and with the solid linearised about the last balance or close to it. Forces along z are
+        replaced by loads on q that displace the bore equally.
         """
         self._require(EXACT if exact else NEARBY)
         if not exact:
@@ -121,7 +123,7 @@ class SolidElasticity(Elasticity):
     def _approach(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
     ) -> NodalEvaluation | None:
-        """Find the balance at once, else by continuation of the pose, from that of the present displacements."""
+        """Find the balance directly, else by continuation of the pose from that of the present displacements."""
         reached, part = 0.0, 1.0
         between = motion.copy()
         while part > SMALLEST_PART and self._linearised < CORRECTIONS:
@@ -140,7 +142,7 @@ class SolidElasticity(Elasticity):
     def _balance(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
     ) -> NodalEvaluation | None:
-        """Film and bush in balance, from the present displacements on; None if it was not found."""
+        """Find film and bush in balance, starting from the present displacements; None if the search fails."""
         try:
             while True:
                 self._release()
@@ -164,17 +166,20 @@ class SolidElasticity(Elasticity):
     def _settled(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
     ) -> NodalEvaluation | None:
-        """The bore of the linear solid in balance with the film; None if it was not found.
+        """Find the bore of the linear solid in balance with the film; None if the search fails.
 
-        What is linear about a deformed state describes no bore that is far from it: from there the bore comes to
-        balance on its own.
+        From the undeformed state the full search of `Elasticity.settle` is used. About a deformed state the linear
+        solid is valid nearby only: full Newton steps are used, and a failure ends the search.
         """
         if not self.displacements.any():
             return super().settle(model, motion, film, start)
         return Newton(model, motion, film).solve(start, 1.0, straight=True)
 
     def _follow(self, evaluation: NodalEvaluation) -> bool:
-        """Move the linear solid under the film's loads; a part of the way, and False, where it would be torn."""
+        """Move the linear solid under the film's loads; return whether the full step was made.
+
+        The step is halved while the residual of the nonlinear solid grows too much.
+        """
         u, nodes = self.displacements, self.solid.mesh.bore.nodes
         load = self._beside.copy()
         load[nodes, :2] += evaluation.bore.load.reshape(-1, 2)
@@ -191,7 +196,7 @@ class SolidElasticity(Elasticity):
     def _correct(
         self, model: FilmOnBore[NodalEvaluation], film: FilmInput, evaluation: NodalEvaluation
     ) -> NodalEvaluation | None:
-        """Balance by the same K and the film's slope at a film; None if that is slow."""
+        """Find the balance by corrections with the present K and the film's derivative; None if they are slow."""
         full, k, nodes = evaluation.motion.copy(), self._q_free.size, self.solid.mesh.bore.nodes
         S = evaluation.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
         factor = lu_factor(self.stiffness - S)
@@ -221,7 +226,10 @@ class SolidElasticity(Elasticity):
         return None
 
     def _lack(self, u: np.ndarray, evaluation: NodalEvaluation) -> tuple[np.ndarray, float]:
-        """F - f(u) (n, 3) at the free coordinates, and the size of F, N; keeps what of F is no radial load."""
+        """Residual F - f(u) (n, 3) at the free coordinates, and the size of F, N.
+
+        The part of F that is not in the radial loads of the bore is stored.
+        """
         mesh, load = self.solid.mesh, np.zeros_like(u)
         load[mesh.bore.nodes] = evaluation.forces_at(mesh.bore.positions + u[mesh.bore.nodes])
         self._beside = load.copy()
@@ -229,7 +237,7 @@ class SolidElasticity(Elasticity):
         return self._free_part(load - self.solid.force(u)), float(np.linalg.norm(load))
 
     def _linearise(self) -> np.ndarray:
-        """K about the present displacements: its factor, and K_c (k, k), N/m."""
+        """Factor K about the present displacements, and return K_c (k, k), N/m."""
         free = self._free
         self._factor = factor = sparse_factor(self.solid.tangent(self.displacements)[free][:, free])
         self._contraction, self._linearised = 0.0, self._linearised + 1
@@ -237,7 +245,7 @@ class SolidElasticity(Elasticity):
         bore = np.empty((places.size, places.size))
         axial = 3 * self.solid.mesh.bore.nodes + 2
         self._by_axial = np.zeros((axial.size, places.size))
-        # of a fine mesh all answers together take gigabytes
+        # in blocks: for a fine mesh all solutions together take gigabytes
         for first in range(0, places.size, COLUMNS):
             some = places[first : first + COLUMNS]
             unit = np.zeros((int(free.sum()), some.size))
@@ -248,13 +256,13 @@ class SolidElasticity(Elasticity):
         inner = np.linalg.inv(bore)
         if self._moves.all():
             return 0.5 * (inner + inner.T)
-        # nodes that are held are so beside the others
+        # held nodes get a large stiffness that is not coupled to the others
         stiffness = np.diag(np.where(self._moves, 0.0, HELD * np.abs(np.diag(inner)).max()))
         stiffness[np.ix_(self._moves, self._moves)] = 0.5 * (inner + inner.T)
         return stiffness
 
     def _require(self, contraction: float) -> None:
-        """Make the solid linear about its last balance where the corrections went on more slowly than that."""
+        """Linearise the solid about its last balance if the corrections contracted more slowly than this rate."""
         if self._contraction > contraction:
             self._renew()
 
@@ -263,7 +271,7 @@ class SolidElasticity(Elasticity):
         self._release()
 
     def _return(self, u: np.ndarray) -> None:
-        """Go back to displacements u; what was linear about them may be so about others now, and serves as well."""
+        """Go back to displacements u, and linearise the solid about them if it was linearised in this search."""
         self.displacements, self._beside = u, np.zeros_like(u)
         if self._linearised:
             self._renew()

@@ -2,8 +2,8 @@
 
 Module map
 ----------
-temperature  one temperature of a film; energy equation of one solved film
+temperature  one temperature for the whole film; energy equation of a solved film
 across       two temperatures across the film
 walls        field of temperatures; bush and journal that conduct, store heat and grow
-power        mechanical power that film and contacts keep; oil that enters and leaves
+power        mechanical power dissipated or stored by film and contacts; oil that enters and leaves
 """

@@ -1,7 +1,7 @@
-"""Two temperatures across the film: a bearing model's state, viscosity and balance of heat, `FilmEnergy.across` = 2.
+"""Two temperatures across the film, `FilmEnergy.across` = 2: state, viscosity and heat balance of a bearing model.
 
 A state has four blocks (n, m) in place of the film's one temperature, K: the mean, the mean with the tilt, and the
-surfaces of bush and journal; see `exudyn_ehd.film.heat.across`. Behind them stand walls that conduct, as in
+surfaces of bush and journal; see `exudyn_ehd.film.heat.across`. The columns of conducting walls follow, as in
 `exudyn_ehd.joint.heat.walls`.
 """
 
@@ -81,7 +81,7 @@ class PairBalance(HeatBalance):
         self.ends = ends
         leaves, loses = (weighed(flow, at) for flow in (own.pressed, own.slides))
         if flows.areas:
-            # what areas take is mixed over the height
+            # oil that enters a supply area is mixed over the height
             leaves[:, np.logical_or.reduce(flows.areas)] = np.eye(2, 4)[:, None] * [[[1.0]], [[0.0]]]
         self.takes, uniform = (leaves[0], loses[0]), np.ones((*q.shape, HEIGHTS.size, 4))
         self.brings = flows.found * weighed(own.slides, uniform)[..., 0]
@@ -103,7 +103,7 @@ class CubicTemperature(FilmTemperature):
     spec, bearing, shape
         As for `FilmTemperature`.
     field : FluidityField
-        Takes the viscosity of the temperatures to the film.
+        Viscosity field that the film reads.
     """
 
     blocks, fields = 4, 2
@@ -116,7 +116,7 @@ class CubicTemperature(FilmTemperature):
         self.fluidity = field
 
     def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
-        """(n, 4 m + k) state, K, at the start of a motion: one temperature, and the walls' at the surfaces."""
+        """Initial state (n, 4 m + k), K: one temperature in the film, those of the walls at the surfaces."""
         start, m = super().initial_temperature(shape), shape[1]
         for at, wall in zip((2 * m, 3 * m), self.sides, strict=True):
             start[:, at : at + m] = self.initial if wall is None else wall.initial

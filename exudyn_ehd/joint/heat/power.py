@@ -1,7 +1,6 @@
-"""Mechanical power that film and contacts keep or store, and the friction behind it.
+"""Mechanical power that film and contacts dissipate or store, friction, oil flows and heat of a solved film.
 
-The balances of the temperature are made of these, of the oil that a film takes in, holds and gives off, and of the heat
-of its motion.
+The heat balances of `exudyn_ehd.joint.heat` are made of them.
 """
 
 from __future__ import annotations
@@ -20,10 +19,10 @@ from exudyn_ehd.joint.solved_film import SolvedFilm
 class Powers(NamedTuple):
     """Friction on the journal about its own axis, Nm, and powers, W, of film and contacts.
 
-    friction_torque, contact_torque : of all, and of the contacts
-    sliding, contact_loss : what spin and axial speed put in, and the part that contact friction takes
-    stored : what a liner and touching surfaces take up
-    loss : what stays, without what the film does to a flexible bore
+    friction_torque, contact_torque : of film and contacts, and of the contacts alone
+    sliding, contact_loss : power put in by spin and axial speed, and its part dissipated by contact friction
+    stored : power stored by a liner and by touching surfaces
+    loss : dissipated power, without the power that the film transmits to a flexible bore
 
     See `exudyn_ehd.joint.model.results.quantities`.
     """
@@ -57,7 +56,7 @@ def powers(film: SolvedFilm) -> Powers:
 
 
 def stored_power(film: SolvedFilm) -> float:
-    """Power that a liner and touching surfaces take up, W; see `exudyn_ehd.joint.model.results.quantities`."""
+    """Power that a liner and touching surfaces store, W; see `exudyn_ehd.joint.model.results.quantities`."""
     p, limited, scaled = film.parts, film.limited, 0.0
     if p.liner is not None:
         scaled = p.liner.stored_power()
@@ -71,18 +70,18 @@ def stored_power(film: SolvedFilm) -> float:
 
 
 def _by_touching(film: SolvedFilm, slope: np.ndarray, rate: np.ndarray, contact: np.ndarray) -> float:
-    """``-sum (p_c + (1 - slope) p) dh/dt`` with the slope of the film's gap to the true gap h and h's rate, scaled."""
+    """Scaled ``-sum (p_c + (1 - slope) p) dh/dt``; h is the true gap, slope the film gap's derivative to h."""
     return -float(np.sum(film.grid.weight * (contact + (1.0 - slope) * film.oil.P) * rate))
 
 
 class OilFlows:
     """Flows of a solved film, oil that enters it from outside, and the rate of its content, in units of c R^2.
 
-    The ends, supply areas and edges of arcs belong to the outside: what flows round in them neither enters nor leaves
-    the film.
+    The ends, supply areas and edges of arcs belong to the outside. Oil that flows around within them neither enters nor
+    leaves the film.
 
-    An end's half control volume holds the void of the film beside it. Full beside a cavity, as its pressure is
-    prescribed, it would take in cold oil where the gap opens and give hot oil off where the gap closes.
+    The half control volume of an end has the void of the neighbouring vertex. If it were full next to a cavity, as its
+    prescribed pressure suggests, it would take in cold oil where the gap opens and give off hot oil where it closes.
 
     A supply area is a well-mixed volume, and so is the groove between two arcs. With the flow Q that the film presses
     into it, of the mean temperature T, the net feed N of fresh oil at the supply temperature T_s, and X that flushes
@@ -90,12 +89,12 @@ class OilFlows:
 
         T_mix = (Q T + (N + X) T_s) / (Q + N + X),        X = (1 / carry_over - 1) Q,
 
-    the heat balance of a groove with hot oil carried over (H. Heshmat and O. Pinkus, J. Tribology 108 (1986) 231). An
-    area that takes oil, N < 0, mixes Q and X alone, and what it takes leaves with T_mix. In a film without axial flow,
-    whose oil has no other way out, areas do not mix: oil that pressure drives into one leaves, and that from one is
-    fresh.
+    the heat balance of a groove with hot oil carried over (H. Heshmat and O. Pinkus, J. Tribology 108 (1986) 231). In
+    an area with a net outflow, N < 0, only Q and X mix, and the outflow leaves with T_mix. In a film without axial
+    flow, oil leaves through areas only, and areas do not mix: oil that the film presses into an area leaves, and oil
+    from an area is fresh.
 
-    Of a compressible film, flows and contents are masses over the density at ambient pressure.
+    Flows and contents of a compressible film are masses over the density at ambient pressure.
 
     Parameters
     ----------
@@ -108,21 +107,22 @@ class OilFlows:
     rate, content : (n, m) arrays
         d(fill H)/dt, 1/s; content of the storage term (scaled gap, times the density ratio), in the middle of the step.
     x, z : (n, m) arrays
-        Over the links i -> i+1 and j -> j+1.
+        Flows over the links i -> i+1 and j -> j+1.
     outside : (n, m) array
-        What enters at the ends and at supplies.
+        Net flow into the film at the ends and at supplies.
     entering, leaving : (n, m) arrays
-        At the supply temperature, and at that of the film; the difference is ``outside``. Of an area that mixes only
-        the sums over its vertices count, and vertices may have negative values of ``leaving``.
+        Flow that enters with the supply temperature, and flow that leaves with the film's temperature; their difference
+        is ``outside``. In areas that mix, only the sums over the area are meaningful: single values of ``leaving`` may
+        be negative.
     found, lost : (n, m) arrays
         Where a cavitation model does not conserve mass: oil that it makes, and oil that it drops.
     back : float
-        Share of ``found`` that has the mixed temperature of ``lost``, the rest being fresh oil.
+        Share of ``found`` that has the mixed temperature of ``lost``; the rest is fresh oil.
     areas : list of (n, m) bool arrays
         Vertices of the areas that mix.
     lines : list of (n, m) bool arrays
-        Vertices of the line of `MaximumGap` whose cavity does not conserve mass. It loses or finds oil there as where
-        a closed ring's film begins: all that leaves the bearing does so at its ends.
+        Vertices of the line of `MaximumGap`, for closures that do not conserve mass. Oil is lost or found there, as
+        where the film of a closed ring begins, so that oil leaves the bearing only at its ends.
     """
 
     def __init__(self, film: SolvedFilm, carry_over: float) -> None:
@@ -130,12 +130,12 @@ class OilFlows:
         conserves, fixed = s.closure.conserves_mass, film.grid.fixed
         fill, fx, fz, carried = s.fill if conserves else s.ones, y.fx, y.fz, s.carried
         if s.law is not None:
-            # these flows hold the upstream film fraction and the links' density already
+            # these flows already contain the upstream film fraction and the density of the links
             fx, fz, _ = s.couette_flows()
             fill, carried = s.rho * fill, s.ones
         stepped = conserves and y.inverse_step > 0.0 and not y.instant
         self.rate = content_rate(s.H, s.H_t, fill, y.mass_old, y.inverse_step if stepped else 0.0, s.squeeze)
-        # in the middle of the step: the gap's half of a step on from its start as the rates have it
+        # in the middle of the step: the content at its start plus half a step of the gap's rate
         before = y.mass_old if stepped else fill * s.H - film.step * self.rate
         self.content = np.maximum(before + 0.5 * film.step * s.H_t, 0.0)
         links, balance = film_flows(y.flow_pressure, carried, conductances_of(film), np.array((fx, fz)))
@@ -149,7 +149,7 @@ class OilFlows:
             self._flow_around(film, fx)
         self.areas = film.parts.mixing if film.grid.flows_along_z else []
         if self.areas and not conserves:
-            # films that end within a link of an area; what this leaves of the balance is the cavity's
+            # inflow of films that end within a link of an area; the rest of the balance is found or lost by the cavity
             inside = np.logical_or.reduce(self.areas)
             ended = supply is not None and not supply.rotating
             np.copyto(self.outside, s.inflow(ended), where=inside)
@@ -170,7 +170,7 @@ class OilFlows:
 
     @property
     def exchanged(self) -> float:
-        """Flow that leaves a film of one temperature, and is replaced by oil of the supply temperature."""
+        """Flow that leaves a film of one temperature and is replaced by oil of the supply temperature."""
         return float(self.leaving.sum()) + self.total_lost - self.back * self.total_found
 
     @property
@@ -179,7 +179,7 @@ class OilFlows:
         return float(max(np.abs(self.x).max(), np.abs(self.z).max()))
 
     def _void_the_ends(self, film: SolvedFilm, stepped: bool) -> None:
-        """Give the ends' control volumes the void of the vertices beside them."""
+        """Give the ends' control volumes the void of the neighbouring vertices."""
         s = film.solver
         old = film.history.void if stepped and film.history is not None else None
         for end, beside, at in ends_of_cavities(s.system, True):
@@ -193,7 +193,7 @@ class OilFlows:
                 self.content[:, end] = np.maximum(self.content[:, end] - lacked, 0.0)
 
     def _flow_around(self, film: SolvedFilm, fx: np.ndarray) -> None:
-        """Let nothing enter by what flows round in the ends' control volumes."""
+        """Exclude oil that flows around within the ends' control volumes from the oil that enters."""
         s = film.solver
         for end, beside, _ in ends_of_cavities(s.system, True):
             if not film.grid.fixed[:, end].all():
@@ -218,28 +218,29 @@ class OilFlows:
 
 
 def conductances_of(film: SolvedFilm) -> np.ndarray:
-    """Conductances (2, n, m) of the links in theta and z, without those along the ends into the corners of arcs, at
-    which pressures jump."""
+    """Conductances (2, n, m) of the links in theta and z; 0 on links along the ends to corners of arcs.
+
+    Pressures jump at these corners.
+    """
     k, (first, last) = np.array((film.solver.system.kx, film.solver.system.kz)), film.grid.edges.T
     k[0, np.append(first, last - 1)[:, None], [0, -1]] = 0.0
     return k
 
 
 def heat_and_exchange(film: SolvedFilm, carry_over: float) -> tuple[float, float]:
-    """Power that film and contacts turn into heat, W, and `OilFlows.exchanged`, of films on end faces too.
+    """Power that film and contacts turn into heat, W, and `OilFlows.exchanged`; both with films on end faces.
 
-    What a link carries dissipates its own power: what sliding puts in, and what the flow loses of its pressure. Summed
-    over the links by parts, with the cavity's pressure pc, the inflow S from outside and the content's rate,
+    Each link dissipates the power of sliding and the pressure drop times the flow. Summed by parts over the links, with
+    the cavity pressure pc, the inflow S from outside and the rate dm/dt of the content,
 
         heat = sliding power + sum (p - pc) (S - A dm/dt),
 
-    which holds none of the powers that store and give back: where nothing changes in time it is `Powers.loss` plus the
-    work on the oil, to rounding. Oil that cavities find or lose has their pressure and does no work, also where a
-    rupture line crosses a cell. Of a compressible film p is the flow work ``integral of dp / (rho / rho_0)``, flows and
-    content are masses.
+    It contains no stored power. In a steady state it is `Powers.loss` plus the work on the oil, to round-off. Oil that
+    cavities find or lose has their pressure and does no work, also where a rupture line crosses a cell. In a
+    compressible film p is the flow work ``integral of dp / (rho / rho_0)``, and flows and contents are masses.
 
-    Oil that leaves the bore at an end flows into the gap between bush and collar. A face takes that in first, and fresh
-    oil in place of what it lacks there and at its outer radius.
+    Oil that leaves the bore at an end flows into the gap between bush and collar. A thrust face takes in this oil
+    first. If it needs more, and at its outer radius, it takes in fresh oil.
     """
     flows, s = OilFlows(film, carry_over), film.solver
     cavity = np.asarray(film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0)
@@ -268,10 +269,10 @@ def _end_work(film: SolvedFilm) -> float:
 def heat_of(film: SolvedFilm) -> np.ndarray:
     """Heat at the vertices, W (n, m): shear, pressure flow and contact friction.
 
-    Their sum is that of `heat_and_exchange` to the grid's error. The shear's sum is that of the loads: counted on
-    control volumes it would be up to 5 % more on ten rows beside supply areas, where the film fraction changes
-    within a row, and up to 6 % more where cold oil enters the ends, as the viscosity changes within one. Films
-    without areas therefore have the difference at their ends.
+    Their sum equals that of `heat_and_exchange` up to the grid's error. The shear is scaled to the shear of the loads.
+    Counted on control volumes it would be too large on ten rows: up to 5 % next to supply areas, where the film
+    fraction changes within a row, and up to 6 % where cold oil enters the ends, since the viscosity changes within a
+    row. In films without supply areas the difference is applied at the ends.
     """
     p, s, R, w = film.parts, film.solver, film.grid.reference_length, film.journal
     flow_power = p.flow_scale * film.scales.pressure
@@ -284,7 +285,7 @@ def heat_of(film: SolvedFilm) -> np.ndarray:
         for (coefficient, transition), P in zip(film.pressing.friction, film.pressing.P, strict=True):
             (g_theta, g_z), _ = film.slip(transition)
             friction += coefficient * (g_theta * (R * w.omega) + g_z * w.axial_speed) * P * s.area
-        # contacts that press on an edge: as much as the integrals of the loads say, which count it finely
+        # scaled to the friction of the loads, whose integrals resolve contacts on an edge
         heat += friction * (rubbed / friction.sum())
     return heat
 
@@ -295,14 +296,14 @@ def dropped(film: SolvedFilm) -> np.ndarray:
 
 
 def sheared(film: SolvedFilm) -> np.ndarray:
-    """Heat of sliding at the vertices, in the power of a unit of flow and pressure (n, m)."""
+    """Heat of sliding at the vertices (n, m), scaled by the power of a unit of flow and pressure."""
     R, w, s = film.grid.reference_length, film.journal, film.solver
     ratio = 1.0 if film.oil.ratio is None else film.oil.ratio
     speed2 = w.omega**2 + (w.axial_speed / R) ** 2
     flow_power = film.parts.flow_scale * film.scales.pressure
     shear = film.share() * ratio / s.H
     density = s.area * shear
-    # the integrals of the loads count finely what changes beside an area, and beside an end that cold oil enters
+    # scaled to the integrals of the loads, which resolve changes next to an area and to an end that cold oil enters
     if film.parts.supply is not None:
         density *= film.parts.supply.land
         density *= np.sum(film.grid.shear_weight * shear) / np.sum(density)

@@ -1,7 +1,7 @@
-"""Temperature of a bearing's film: one for all of it, or a field by the energy equation.
+"""Temperature of a bearing's film: one for the whole film, or a field by the energy equation.
 
-Heat balance at accepted steps, viscosity for the next one, and the settled steady state. The energy equation of one
-solved film follows from its flows: banded system, solution and balance.
+Heat balance of accepted steps, viscosity for the next step, and steady state. `HeatBalance` is the energy equation of a
+solved film with its flows: banded system, solution and balance.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from exudyn_ehd.joint.solved_film import History, SolvedFilm
 
 
 class BandSolver:
-    """Systems of ``unknowns`` at every vertex of a film grid (n, m); its buffers stay."""
+    """Banded linear systems with ``unknowns`` at every vertex of a film grid (n, m); the buffers are reused."""
 
     def __init__(self, shape: tuple[int, int], unknowns: int) -> None:
         n, m = shape
@@ -38,11 +38,14 @@ class BandSolver:
         self.inverse = np.zeros(self.size)
 
     def factor(self) -> None:
-        """Factor what ``lower`` and ``upper`` hold."""
+        """Factor the matrix in ``lower`` and ``upper``."""
         self.regular = factor_lu(self.lower, self.upper, self.size, self.width, self.inverse)
 
     def solve(self, rhs: np.ndarray) -> np.ndarray:
-        """Fields of each right-hand side's unknowns in turn (k, n, m), as ``rhs``; inf for a singular system."""
+        """Return the solutions (k, n, m) for right-hand sides of the same shape; inf for a singular system.
+
+        k counts the unknowns of the first right-hand side, then those of the second, and so on.
+        """
         if not self.regular:
             return np.full(rhs.shape, np.inf)
         sides = rhs.reshape(-1, self.unknowns, self.order.size)
@@ -53,42 +56,43 @@ class BandSolver:
         return out.reshape(rhs.shape)
 
 
-# 1/K; no oil thins faster with the temperature.
+# Largest temperature coefficient of the viscosity of any oil, 1/K. If the heat times this is below what the oil stores
+# per kelvin, the heat is not linearised. Larger: the coefficient is computed more often.
 STEEPEST = 0.2
 Field = float | np.ndarray
 
 
 def temperature_of(film: SolvedFilm) -> np.ndarray:
-    """Temperature of a film, K: one for all of it, or a field (n, m)."""
+    """Temperature of a film, K: one number, or a field (n, m)."""
     assert film.temperature is not None
     return np.asarray(film.temperature)
 
 
 def viscosity_ratio(oil: Lubricant, temperature: Field) -> np.ndarray:
-    """Viscosity of an oil at a temperature, K, over that at its own temperature."""
+    """Viscosity of an oil at a temperature, K, over that at `Lubricant.temperature`."""
     if (law := oil.temperature_law) is None:
         return np.ones_like(np.asarray(temperature, dtype=float))
     return law.viscosity(temperature, oil.density) / float(law.viscosity(float(oil.temperature), oil.density))
 
 
 class OilTemperature(abc.ABC):
-    """Temperature of the film: part of the history of accepted steps, and of the viscosity of the next one.
+    """Temperature of the film: stored in the history of accepted steps, it sets the viscosity of the next step.
 
-    The film of a step sees the temperature at the step's start, so that force and tangent do not depend on what it
-    will become.
+    The film of a step has the start-of-step temperature, so that force and tangent do not depend on the temperature at
+    its end.
     """
 
     initial_leaving: np.ndarray | None = None
 
     @abc.abstractmethod
     def initial_temperature(self, shape: tuple[int, int]) -> Field:
-        """K, at the start of a motion, on a grid of this shape."""
+        """Temperature at the start of a motion, K, on a grid of this shape."""
 
     @abc.abstractmethod
     def set_viscosity(self, temperature: Field) -> float:
-        """Bring the effect's viscosity field to a temperature, K.
+        """Set the viscosity field to that of a temperature, K.
 
-        Returns the viscosity over the reference that the whole film shares.
+        Returns the factor on the reference viscosity that is the same in the whole film.
         """
 
     @abc.abstractmethod
@@ -116,10 +120,11 @@ class OilTemperature(abc.ABC):
         return self.supply if temperature is None else temperature
 
     def outside(self, film: SolvedFilm) -> tuple[float, float]:
-        """Return the temperature, K, to which the oil takes its heat in the film's step, and the conductance, W/K.
+        """Return the temperature, K, to which the oil carries heat in the film's step, and the conductance, W/K.
 
-        Without a sump it is the supply's temperature, and the conductance is infinite. A sump's heat capacity acts over
-        a step as one more conductance, to the sump's temperature at the start of the step.
+        Without a sump they are the supply temperature and infinity. With a sump they combine two conductances in
+        parallel: that of the sump to the supply temperature, and heat capacity / step to the sump's start-of-step
+        temperature.
         """
         sump, known = self.sump, None if film.history is None else film.history.sump
         if sump is None or known is None or film.step <= 0.0:
@@ -128,11 +133,11 @@ class OilTemperature(abc.ABC):
         return known + sump.conductance / total * (self.supply - known), total
 
     def split(self, temperature: Field) -> tuple[Field, Walls | None]:
-        """The film's own part of a temperature, K, as a history has it, and that of walls and surfaces."""
+        """Split a history's temperature, K, into that of the film and those of walls and surfaces."""
         return temperature, None
 
     def leaving(self, film: SolvedFilm, temperature: Field) -> np.ndarray | None:
-        """Temperature (2,) of the oil that leaves a film at both ends, K; None where all of it has one."""
+        """Temperature (2,) of the oil that leaves a film at both ends, K; None if the film has one temperature."""
         return None
 
     def first_memory(self, shape: tuple[int, int]) -> History:
@@ -147,16 +152,17 @@ class OilTemperature(abc.ABC):
         return History(temperature=T, sump=sump, leaving=None if film.beside is None else self.leaving(film, T))
 
     def viscosity_ratio(self, temperature: Field) -> np.ndarray:
-        """Viscosity of the oil at a temperature, K, over that at its own temperature."""
+        """Viscosity of the oil at a temperature, K, over that at `Lubricant.temperature`."""
         return viscosity_ratio(self.lubricant, temperature)
 
     def follows(self, T: Field, heat: Field, store: Field) -> Field:
-        """Return the decrease of the heat per kelvin that a step raises T; heat, W, and store, W/K, are scaled alike.
+        """Return by how much the heat falls per kelvin in the linearised heat of a step.
 
-        Viscosity and heat are those at the start of the step. Where the oil stores less per kelvin than the heat
-        changes, such a step would overshoot and the next one swing back. There the heat is linearised in the
-        temperature, by the part that the store lacks. Steps much shorter than the exchange of the oil are explicit. In
-        a steady state, which stores nothing, repeated use converges where the heating is strong.
+        ``heat``, W, and ``store``, W/K, have the same scale. A step uses the viscosity and the heat at its start. Where
+        the oil stores less per kelvin than the heat changes, the temperature would overshoot and swing back in the next
+        step. There the heat is linearised, with the excess of its slope over the store. In steps much shorter than the
+        time in which the oil is replaced, the excess is 0. In a steady state, with no store, the linearisation lets the
+        iteration converge under strong heating.
         """
         if not np.any(STEEPEST * heat > store):
             return 0.0
@@ -172,14 +178,15 @@ class LumpedTemperature(OilTemperature):
     spec : LumpedThermal
     lubricant : Lubricant
     volume : float
-        Of the film, m3.
+        Volume of the film, m3.
     heat_and_exchange : function
-        Gives the heat, W, of a film with a carry-over, and the scaled flow that oil from outside replaces.
+        Function of a film and a carry-over; returns the heat, W, and the scaled flow that is replaced by oil from
+        outside.
 
     Attributes
     ----------
     field : ViscosityField or None
-        Takes the viscosity to an effect that asks for it, as (1, 1) arrays.
+        Viscosity field, a (1, 1) array, for effects that read one.
     """
 
     def __init__(
@@ -197,11 +204,11 @@ class LumpedTemperature(OilTemperature):
         self.field: ViscosityField | None = None
 
     def initial_temperature(self, shape: tuple[int, int]) -> float:
-        """K, at the start of a motion."""
+        """Temperature at the start of a motion, K."""
         return self.initial
 
     def set_viscosity(self, temperature: float | np.ndarray) -> float:
-        """Viscosity over the reference at a temperature, K, that the whole film shares."""
+        """Set the viscosity field, and return the factor on the reference viscosity at a temperature, K."""
         if self._last[0] != temperature:
             ratio = float(self.viscosity_ratio(float(temperature)))
             self._last = float(temperature), ratio
@@ -220,11 +227,11 @@ class LumpedTemperature(OilTemperature):
         return self._settled(film, self.capacity / film.step) if film.step > 0.0 else float(temperature_of(film))
 
     def steady_temperature(self, film: SolvedFilm) -> float:
-        """Temperature in balance with the heat of a solved film; inf without a way out for the heat."""
+        """Temperature in balance with the heat of a solved film; inf without a sink for the heat."""
         return self._settled(film, 0.0)
 
     def _settled(self, film: SolvedFilm, store: float) -> float:
-        """Temperature at the end of a step that stores so much, W/K."""
+        """Temperature at the end of a step; ``store``: heat capacity / step, W/K, 0 for the steady state."""
         T, (heat, flow), G = float(temperature_of(film)), self._rates(film), self.spec.housing_conductance
         if store + flow + G <= 0.0:
             return math.inf if heat > 0.0 else T
@@ -246,41 +253,45 @@ class LumpedTemperature(OilTemperature):
         }
 
 
-# Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
+# Flow into every control volume, as a share of the largest flow, that keeps its old temperature. It makes the
+# temperature of a volume that no oil enters defined. Larger: all temperatures lag more.
 STAGNANT = 1e-14
-# Exchange over every link within a supply area, in the film's largest flow. Smaller: areas are mixed less well, their
-# temperatures differ by up to a share n_theta / MIXED of their rise. Larger: more round-off, 1e-16 MIXED of that rise.
+# Exchange flow over every link within a supply area, over the film's largest flow. Smaller: areas are mixed less well;
+# their temperatures differ by up to a share n_theta / MIXED of their rise. Larger: more round-off, 1e-16 MIXED of the
+# rise.
 MIXED = 1e4
-# Share of it over a link between the two rows at the side of a dam. Far smaller: the limiter of the flows along z takes
-# the slope between these rows, which is round-off, and steady temperatures do not settle.
+# Exchange flow between the two rows at the side of a dam, over that in supply areas. Far smaller: the limiter of the
+# flows along z uses the slope between these rows, which is round-off, and steady temperatures do not converge.
 JOINED = 1e-2
 
 
-# k / h, W/(m2 K), None without a conductivity; m2 of the vertices; coefficients of both sides, W/(m2 K), of walls None.
+# Conductivity over film thickness, W/(m2 K), None without a conductivity; area of the vertices, m2; coefficients of
+# both sides, W/(m2 K), None for a wall that conducts.
 PassageData = tuple[np.ndarray | None, np.ndarray, tuple[float | None, float | None]]
 
 
 class HeatBalance:
-    """Energy equations of a film between surfaces that have temperatures outside, K.
+    """Energy equations of a film between two sides, bush and journal, with given temperatures, K.
 
-    Over a step, or in the steady state with a step of 0. The unknowns are k fields (k, n, m), K: here the mean
-    temperature alone. ``at`` lists the temperatures of both sides as (n, 1) or (1, 1) arrays. Coefficients of all of
-    them have a last axis of k + 2.
+    They hold over a step, or with a step of 0 in the steady state. The unknowns are k fields (k, n, m), K: here the
+    mean temperature alone. ``at`` lists the temperatures of both sides as (n, 1) or (1, 1) arrays. Arrays of
+    coefficients have a last axis of k + 2: for the k fields and for both sides.
 
     Attributes
     ----------
     scale : float
         W/K per scaled flow, the unit of the equations.
     through : (2, n, m, k + 2) array
-        Heat into both sides, W.
+        Coefficients of the heat into both sides, W.
     own : (k, n, m, k + 2) array
-        Scaled heat that leaves the vertices, without that over the links.
+        Coefficients of the scaled heat that leaves the vertices, without the heat over the links.
     given, brings : (k, n, m) arrays
-        Scaled heat besides it, and what oil of unit temperature adds that a cavitation model finds.
+        Scaled right-hand side, and heat of the oil found by a cavitation model per unit of its temperature.
     ends : (2, 2, k, n, m, k + 2) array, or empty
-        Scaled heat over the links in theta and z by their own and the next vertex, where it depends on what is outside.
+        Coefficients of the scaled heat over the links in theta and z, by the values at their first and second vertex;
+        empty if this heat does not depend on the sides' temperatures.
     takes : two arrays
-        Temperature of the oil that leaves, and of that which a cavitation model loses.
+        Coefficients of the temperature of the oil that leaves, and of the oil that a cavitation model loses.
     """
 
     def __init__(
@@ -338,17 +349,17 @@ class HeatBalance:
         return MIXED * self.flows.largest * links
 
     def between(self, at: list[np.ndarray]) -> np.ndarray:
-        """Unknowns with temperatures ``at`` outside."""
+        """Solve for the unknowns with temperatures ``at`` of the sides."""
         x = self._answer(self.given, [a - self.supply for a in at])
         x[0] += self.supply
         return x
 
     def change(self, at: list[np.ndarray]) -> np.ndarray:
-        """Change of `between` by a change outside."""
+        """Change of `between` by a change ``at`` of the sides' temperatures."""
         return self._answer(np.zeros_like(self.given), at)
 
     def _answer(self, given: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
-        """Unknowns with rises ``at`` outside."""
+        """Unknowns, above the supply temperature, with rises ``at`` of the sides."""
         rest = given - linear(self.own[..., -2:], at)
         for axis, (own, other) in enumerate(self.ends):
             flow = linear(own[..., -2:], at) + linear(other[..., -2:], [np.roll(a, -1, axis) for a in at])
@@ -359,7 +370,7 @@ class HeatBalance:
         return x
 
     def _mixed(self, fields: Sequence[np.ndarray | float]) -> float:
-        """Temperature of all oil that is lost, mixed."""
+        """Mixed temperature of all oil that a cavitation model loses."""
         return float(np.sum(self.weight * linear(self.takes[1], fields)))
 
     def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
@@ -367,11 +378,11 @@ class HeatBalance:
         return list(linear(self.through, [*x, *at]))
 
     def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
-        """Blocks (n, ...) of the film in a state."""
+        """Columns (n, ...) of the film in a state."""
         return x[0]
 
     def totals(self, x: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
-        """Heat in, convected and stored, W, with these unknowns at the end."""
+        """Heat in, convected and stored, W, of a step that ends with the unknowns x."""
         levels = (self.supply, *[0.0] * (len(x) - 1), self.supply, self.supply)
         rise = [field - level for field, level in zip([*x, *at], levels, strict=True)]
         flows, moved = self.flows, x[0] - self.old
@@ -387,5 +398,5 @@ class HeatBalance:
 
 
 def linear(coefficients: np.ndarray, fields: Sequence[np.ndarray | float]) -> np.ndarray:
-    """Values (..., n, m) of what is linear in fields (n, m), one for each of the coefficients' last axis."""
+    """Sum (..., n, m) of fields (n, m) times coefficients, whose last axis counts the fields."""
     return np.asarray(sum(coefficients[..., k] * field for k, field in enumerate(fields)))

@@ -1,11 +1,11 @@
-"""Temperatures of the film, with those of bush and journal where they conduct, and the growth of such walls.
+"""Temperature field of a film, with temperatures and growth of a conducting bush and journal (walls).
 
-A state (n, m + k) has the film's temperatures in its first m columns, behind them those of the bush's rings, from the
-bore outward, and the journal's, from its surface inward and the same in every row; K.
+A state (n, m + k) has the film's temperatures in its first m columns. Then follow those of the bush's rings, from the
+bore outward, and of the journal's rings, from its surface inward; the journal's are the same in every row. Unit: K.
 
-Film, bush and journal of a step are one linear system. The walls are condensed onto their surfaces, heat that they
-take by temperature there, `exudyn_ehd.film.heat.options`; what the film gives there follows from its own system,
-which is factored once, and from `exudyn_ehd.film.heat.energy`.
+Film, bush and journal of a step are one linear system. The walls are condensed onto their surfaces: their heat flow is
+a linear function of the surface temperatures, `exudyn_ehd.film.heat.options`. The film's heat flow into the surfaces
+follows from its banded system, which is factored once, and from `exudyn_ehd.film.heat.energy`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.solid.linear import solve_by_products
 from exudyn_ehd.status import ROUNDING
 
-# Share of the heat to which what the film gives and what the walls take agree.
+# Tolerance of the heat flow between film and walls, relative. Larger: fewer iterations of GMRES.
 AGREED = 1e-13
 
 
@@ -51,7 +51,7 @@ class _Wall:
         return self.expands * (float(np.mean(self.of(state) @ self.rings.share)) - self.at_clearance)
 
     def heat(self, state: np.ndarray, old: np.ndarray) -> tuple[float, float]:
-        """Given off to the ambient and stored, W, by a step to ``state``."""
+        """Heat given off to the ambient, and stored heat, W, of a step from ``old`` to ``state``."""
         T = self.of(state)
         stored = float(np.sum(self.rings.store * (T - self.of(old))))
         return float(np.sum(self.rings.loss * (T - self.ambient))), stored
@@ -65,12 +65,12 @@ class FilmTemperature(OilTemperature):
     spec : FilmEnergy
     bearing : JournalBearing
     field : ViscosityField
-        Takes the viscosity of the temperature field to the film.
+        Viscosity field that the film reads.
     shape : (int, int)
         Shape of the film's grid.
     """
 
-    # of a state, and unknowns at each vertex
+    # number of film blocks in a state, and of unknowns at each vertex
     blocks, fields = 1, 1
 
     def __init__(self, spec: FilmEnergy, bearing: JournalBearing, field: ViscosityField, shape: tuple[int, int]):
@@ -88,7 +88,7 @@ class FilmTemperature(OilTemperature):
                 self.sides[side] = known = _Wall(wall, rings, self.supply, bearing)
                 known.columns = slice(end, end + rings.radii.size)
                 end = known.columns.stop
-                self.transfer += wall.conductance  # more than nothing: a way out for the heat
+                self.transfer += wall.conductance  # above 0, the wall is a sink for the heat
         self.conducting = [wall for wall in self.sides if wall is not None]
         self.size, self.unknowns = end, sum(wall.rings.columns for wall in self.conducting)
         if bearing.thrust is not None:
@@ -103,14 +103,14 @@ class FilmTemperature(OilTemperature):
         return BandSolver(self.shape, self.fields)
 
     def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
-        """(n, m + k) state, K, at the start of a motion."""
+        """State (n, m + k) at the start of a motion, K."""
         start = np.full((shape[0], self.size), float(self.initial))
         for wall in self.conducting:
             start[:, wall.columns] = wall.initial
         return start
 
     def set_viscosity(self, temperature: float | np.ndarray) -> float:
-        """Bring the viscosity field to a state, K; the film shares no other factor than 1."""
+        """Set the viscosity field to that of a state, K; return 1, the factor on the reference viscosity."""
         if temperature is not self._last:
             self._last = np.asarray(temperature)
             self.field.set(self.viscosity_ratio(self.heights(self._last)))
@@ -121,7 +121,7 @@ class FilmTemperature(OilTemperature):
         return np.ascontiguousarray(state[:, : self.shape[1]])
 
     def split(self, temperature: float | np.ndarray) -> tuple[float | np.ndarray, Walls | None]:
-        """The film's own temperatures (n, m) of a state, and its walls; None where nothing stands behind the film's."""
+        """Split a state into the film's temperatures (n, m) and its walls; None for a state without walls."""
         if self.size == self.shape[1]:
             return temperature, None
         if temperature is not self._last_split:
@@ -153,13 +153,16 @@ class FilmTemperature(OilTemperature):
         return old if film.step <= 0.0 else self._with_supply(film, film.step)
 
     def leaving(self, film: SolvedFilm, temperature: np.ndarray | float) -> np.ndarray:
-        """Mean temperature (2,) of the oil that leaves at both ends, K, by its flow; of all of it where none leaves."""
+        """Mean temperature (2,) of the oil that leaves at both ends, K, weighted by its flow.
+
+        At an end without outflow it is the mean of the film's temperature there.
+        """
         out = np.maximum(OilFlows(film, self.carry_over).leaving[:, [0, -1]], 0.0)
         weights = np.where(out.sum(axis=0) > 0.0, out, 1.0)
         return np.asarray(np.average(np.asarray(temperature)[:, [0, self.shape[1] - 1]], axis=0, weights=weights))
 
     def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
-        """State in balance with the heat of a solved film; not finite without a way out for the heat."""
+        """State in balance with the heat of a solved film; not finite without a sink for the heat."""
         flows = OilFlows(film, self.carry_over)
         stagnant = flows.exchanged <= ROUNDING * float(np.abs(flows.x).max())
         if self.transfer == 0.0 and stagnant and heat_of(film).max() > 0.0:
@@ -167,26 +170,26 @@ class FilmTemperature(OilTemperature):
         return self._with_supply(film, 0.0)
 
     def _with_supply(self, film: SolvedFilm, step: float) -> np.ndarray:
-        """State at the end of a step, s, with its supply; 0: steady state."""
+        """State at the end of a step, s, with the supply temperature of the sump; step 0: steady state."""
         old, (supply, conductance) = self.state_of(film.history), self.outside(film)
         state = self._settled(film, step, old, supply)
         if math.isinf(conductance):
             return state
-        # all is linear in the temperature of the supply
+        # state and heat are linear in the supply temperature
         warmer = self._settled(film, step, old, supply + 1.0)
         cold, warm = self._carried(film, step, state, supply), self._carried(film, step, warmer, supply + 1.0)
         return state + cold / (conductance + cold - warm) * (warmer - state)
 
     def _carried(self, film: SolvedFilm, step: float, state: np.ndarray, supply: float) -> float:
-        """Heat that the oil carries out of the film in a step, s, W, with a temperature of the supply, K."""
+        """Heat flow, W, carried out of the film by the oil in a step, s, at a supply temperature, K."""
         at = [self._surface(side, state) for side in (0, 1)]
         return self.equations(film, step, supply).totals(self._of_film(state), at)["convected"]
 
     def balance(self, film: SolvedFilm, temperature: np.ndarray) -> dict[str, float]:
-        """Heat in, convected, conducted to ambient or given walls, and stored, W, of a step that ends at a state.
+        """Heat balance of film and walls, W, for a step that ends at a state.
 
-        Of all of it, film and walls; also ``bush`` and ``journal``, the heat that leaves the film into them, and the
-        temperature of the supply, K.
+        Terms: heat in, convected, conducted to the ambient or to given walls, and stored. Also ``bush`` and
+        ``journal``, the heat from the film into them, and the supply temperature, K.
         """
         T, old, (supply, conductance) = self._of_film(temperature), self.state_of(film.history), self.outside(film)
         if math.isfinite(conductance):
@@ -207,17 +210,17 @@ class FilmTemperature(OilTemperature):
         return out | {"bush": float(q[0].sum()), "journal": float(q[1].sum()), "supply_temperature": supply}
 
     def state_of(self, history: History | None) -> np.ndarray:
-        """State that a history keeps, that of the start without one."""
+        """State in a history; the initial state if there is none."""
         known = None if history is None else history.temperature
         return self.initial_temperature(self.shape) if known is None else np.asarray(known)
 
     def _surface(self, side: int, state: np.ndarray) -> np.ndarray:
-        """Temperature that a side presents to the film (n, 1) or (1, 1), K."""
+        """Surface temperature of a side, (n, 1) or (1, 1), K."""
         wall = self.sides[side]
         return np.full((1, 1), self.walls[side][1]) if wall is None else wall.of(state)[:, :1]
 
     def _settled(self, film: SolvedFilm, step: float, old: np.ndarray, supply: float) -> np.ndarray:
-        """State at the end of a step with a temperature of the supply, K."""
+        """State at the end of a step for a given supply temperature, K."""
         for wall in self.conducting:
             wall.rings.bring_to(step)
         between = self.equations(film, step, supply)
@@ -234,10 +237,10 @@ class FilmTemperature(OilTemperature):
         return state
 
     def _surfaces_change(self, between: HeatBalance, old: np.ndarray, heat: list[np.ndarray]) -> np.ndarray:
-        """Change (k,) of the walls' surface temperatures from ``old``, at which the film gives ``heat``, W, to where
-        the walls take what it gives.
+        """Change (k,) of the walls' surface temperatures at which film and walls have the same heat flow.
 
-        By GMRES, led by the walls and the film's passage at its mean temperature.
+        ``heat``: heat flow, W, from the film at the temperatures ``old``. Solved by GMRES; the preconditioner is the
+        system of the walls with a film of fixed temperatures.
         """
         stiff, missing, at = np.zeros((self.unknowns, self.unknowns)), np.zeros(self.unknowns), 0
         for wall in self.conducting:
@@ -256,11 +259,11 @@ class FilmTemperature(OilTemperature):
         return solve_by_products(led, lu_solve(lead, missing + given), enough, self.unknowns)
 
     def equations(self, film: SolvedFilm, step: float, supply: float) -> HeatBalance:
-        """Return the equations of a solved film over a step, s, 0: steady state, with a supply of some temperature."""
+        """Return the equations of a solved film over a step, s (0: steady state), at a supply temperature, K."""
         return HeatBalance(self, film, step, self.passage(film), self.band, supply)
 
     def passage(self, film: SolvedFilm) -> PassageData:
-        """Return the passage of heat from a solved film to both sides."""
+        """Return the data of the heat flow from a solved film to both sides, see `PassageData`."""
         k = self.spec.conductivity
         kappa = None if k is None else k / (self.clearance * film.solver.H)
         area = film.solver.area * film.grid.reference_length**2
@@ -272,13 +275,13 @@ class FilmTemperature(OilTemperature):
         return state[None, :, : self.shape[1]]
 
     def _spread(self, w: np.ndarray) -> list[np.ndarray]:
-        """Values (k,) at the surfaces of walls that conduct as (n, 1) or (1, 1) of both sides, the others' zero."""
+        """Values (k,) at the surfaces of conducting walls as (n, 1) or (1, 1) arrays of both sides; else zero."""
         columns = [0 if wall is None else wall.rings.columns for wall in self.sides]
         parts = np.split(w, columns[:1])
         return [part[:, None] if part.size else np.zeros((1, 1)) for part in parts]
 
     def _gather(self, heat: list[np.ndarray]) -> np.ndarray:
-        """Sums (k,) of fields (n, m) of both sides over what each column of a wall that conducts takes."""
+        """Sums (k,) of the fields (n, m) of both sides over the vertices at each column of a conducting wall."""
         rows = [
             h.sum(axis=1).reshape(wall.rings.columns, -1).sum(axis=1)
             for wall, h in zip(self.sides, heat, strict=True)
@@ -287,9 +290,9 @@ class FilmTemperature(OilTemperature):
         return np.concatenate(rows)
 
     def _held(self, through: np.ndarray) -> np.ndarray:
-        """Return the heat to walls from a film of held temperatures, per kelvin of their surfaces (k, k), W/K.
+        """Heat flow into the walls from a film of fixed temperatures, per kelvin of their surfaces (k, k), W/K.
 
-        ``through`` (2, n, m, 2): per kelvin of both sides.
+        ``through`` (2, n, m, 2): heat into both sides per kelvin of both sides.
         """
         (bush, both), (_, journal) = np.moveaxis(through.sum(axis=2), -1, 1)
         whole = np.block([[np.diag(bush), both[:, None]], [both, journal.sum()]])
@@ -298,7 +301,7 @@ class FilmTemperature(OilTemperature):
 
 
 class Growth:
-    """Growth of the walls as a gap term: uniform, with the temperatures at the start of a step."""
+    """Growth of the walls as a gap term: uniform, by the start-of-step temperatures."""
 
     def __init__(self, thermal: FilmTemperature) -> None:
         self.thermal = thermal

@@ -2,11 +2,11 @@
 
 Module map
 ----------
-build      model from a description, turning journals; kernels compiled before the first step
+build      model from a description, turning journals; compilation of kernels before the first step
 rigid      rigid journal in a rigid bore; one-sided derivatives at the exact centre
-flexible   elastic bore
-impedance  fitted map
-effects    what an effect must offer, and the only place that asks which are present; grid, solver and buffers
+flexible   flexible bore, flexible journal or both
+impedance  force from a fitted impedance map
+effects    protocols of effects; effects of a description, the only place that checks for options; grid, solver, buffers
 loads      integrals of pressure and shear, and the wrench
 results    scalars and fields of a state
 """

@@ -1,7 +1,7 @@
 """Model from a bearing's description, and compilation of its kernels before a study or a run.
 
-Flexible surfaces follow from a bush, an elastic journal or both; the modes of an `FEJournal` turn under the film, see
-`exudyn_ehd.solid.journal.turning`.
+A bush, an elastic journal or both make a flexible model. The modes of an `FEJournal` turn with the journal under the
+film, see `exudyn_ehd.solid.journal.turning`.
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ from exudyn_ehd.status import InputError, Status
 class TurningEvaluation(ElasticEvaluation):
     """One film evaluation on a journal whose modes turn under it.
 
-    ``wrench`` has the moment of the pressure on the deflected journal about its axis; ``bore`` is in the body's modes,
-    ``film.bore`` in the waves that stand, see `exudyn_ehd.solid.journal.turning`.
+    ``wrench`` contains the moment of the pressure on the deflected journal about its axis. ``bore`` has the coordinates
+    of the body's modes, ``film.bore`` those of standing waves, see `exudyn_ehd.solid.journal.turning`.
 
     Attributes
     ----------
     turn : (K, k) array, float, bool
-        T, the speed that carries the shape round, rad/s, and whether it is the journal's.
+        Matrix T from modes to waves; speed at which the shape turns, rad/s; whether this is the journal's spin.
     moment : float
-        Nm.
+        Moment of the pressure on the deflected journal about its axis, Nm.
     """
 
     model: TurningModel = dataclasses.field(repr=False)
@@ -51,7 +51,7 @@ class TurningEvaluation(ElasticEvaluation):
     moment: float = 0.0
 
     def quantities(self) -> dict[str, float]:
-        """Return `ElasticEvaluation.quantities`; torques contain the pressure's moment on the deflected journal."""
+        """Return `ElasticEvaluation.quantities`, with the pressure's moment on the deflected journal in the torques."""
         found = super().quantities()
         if self.film is not None:
             found["friction_torque"] += self.moment
@@ -88,7 +88,9 @@ class TurningEvaluation(ElasticEvaluation):
 
 
 class TurningModel(ElasticBearingModel):
-    """Film on a journal whose modes turn under it; ``motion`` (10 + 2 k,) has the modes, ``spin`` the journal's angle.
+    """Film on a journal whose modes turn under it.
+
+    ``motion`` (10 + 2 k,) contains the coordinates and rates of the modes; ``spin`` is the journal's angle.
 
     Parameters
     ----------
@@ -100,7 +102,7 @@ class TurningModel(ElasticBearingModel):
     Attributes
     ----------
     turns : bool
-        False for shapes that stand in the joint's frame, as `evaluate_steady` looks for.
+        True: the shape turns with the journal. False: it stands in the joint's frame, as in `evaluate_steady`.
     """
 
     def __init__(
@@ -123,7 +125,7 @@ class TurningModel(ElasticBearingModel):
         return self.turning.count
 
     def _journal(self, motion: np.ndarray, spin: float) -> JournalMotion:
-        """Take over a motion (10 + 2 k,), in waves; with (10,) the journal is undeformed and its modes at rest."""
+        """Set the motion (10 + 2 k,), transformed to waves; with (10,) the journal is undeformed at rest."""
         given, k = np.zeros(MOTION_SIZE + 2 * self.size), self.size
         given[: np.size(motion)] = motion
         q, q_t = given[MOTION_SIZE : MOTION_SIZE + k], given[MOTION_SIZE + k :]
@@ -149,7 +151,7 @@ class TurningModel(ElasticBearingModel):
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> ElasticEvaluation:
-        """Evaluate `ElasticBearingModel.evaluate_steady` with a deflection at rest under the turning journal."""
+        """Call `ElasticBearingModel.evaluate_steady` with a deflection that stands while the journal turns."""
         turns, self.turns = self.turns, False
         try:
             return super().evaluate_steady(motion, history, step, spin)
@@ -158,7 +160,7 @@ class TurningModel(ElasticBearingModel):
 
 
 def _axis(motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Axis (3,) of the journal and its derivative (3, 2) to the slopes."""
+    """Axis (3,) of the journal and its derivative (3, 2) to the slopes of the axis."""
     slope = np.array([motion[2], motion[3], 1.0])
     size = float(np.linalg.norm(slope))
     return slope / size, (np.eye(3) - np.multiply.outer(slope, slope) / size**2)[:, :2] / size
@@ -186,7 +188,7 @@ def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects)
 
 
 def _bore_and_elasticity(bearing: JournalBearing) -> tuple[Callable[[FilmGrid], Bore], Elasticity]:
-    """A function that makes the bore on a film's grid, and what resists its coordinates."""
+    """Return a function that makes the bore on a film's grid, and the elasticity that resists its coordinates."""
     bush, pin = bearing.bush, bearing.journal
     if isinstance(bush, ModalBush | None):
         assert isinstance(pin, ElasticJournal | None)
@@ -202,7 +204,7 @@ def _bore_and_elasticity(bearing: JournalBearing) -> tuple[Callable[[FilmGrid], 
 
 
 def compile_kernels(model: BearingModel) -> None:
-    """Evaluate once at a small eccentricity, so that a run never stops to compile; leaves no warm start behind."""
+    """Evaluate one film, so that kernels are compiled before a run; the warm start is dropped."""
     motion = np.zeros(MOTION_SIZE)
     motion[0] = 0.1 * model.bearing.radial_clearance
     motion[8] = 1.0
@@ -216,7 +218,7 @@ def compile_kernels(model: BearingModel) -> None:
 
 
 def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingModel:
-    """Model of a bearing for one prescribed position; ``start_angle`` is where a film with `MaximumGap` starts, rad."""
+    """Model of a bearing, with its kernels compiled; ``start_angle``: start of a film with `MaximumGap`, rad."""
     effects = collect_effects(bearing, start_angle)
     if (bearing.bush is None and bearing.journal is None) or effects.liner is not None:
         model = BearingModel(bearing, start_angle=start_angle, effects=effects)

@@ -1,6 +1,6 @@
-"""Effects of a bearing's model from its description: the only place that asks which of them are present.
+"""Effects of a bearing's model from its description: the only place that checks which options are present.
 
-Beside them grid, solver and buffers of a bearing model: the parts that stay from evaluation to evaluation.
+Also grid, solver and buffers of a bearing model: the parts that are kept from evaluation to evaluation.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ from exudyn_ehd.joint.solved_film import ContactFields, FilmParts, History, Limi
 
 
 class GapTerm(Protocol):
-    """Adds to the gap of the rigid surfaces; must not depend on the motion."""
+    """Addition to the gap of the rigid surfaces, which must not depend on the motion."""
 
     def field(self, history: History | None) -> np.ndarray:
-        """Scaled addition to the gap at the vertices (n, m) for the history at the start of the step."""
+        """Scaled addition to the gap at the vertices (n, m), by the history at the start of the step."""
 
 
 class Wear(GapTerm, Protocol):
-    """A depth that the contact pressure adds to the gap, step by accepted step."""
+    """Depth by which the contact pressure of accepted steps has enlarged the gap."""
 
     def grown(self, film: SolvedFilm) -> np.ndarray:
         """Scaled depth (n, m) at the end of a solved film's step."""
@@ -62,14 +62,15 @@ class Effects:
     shear_factor : ShearFactor or None
     thermal : OilTemperature or None
     density : CompressibleLaw or None
-        Density law of a compressible film; then also the ``pressure_law``.
+        Density law of a compressible film; ``pressure_law`` is then the same object.
     wear : Wear or None
-        Grows with the pressure of the contacts; one of ``gap_terms``.
+        Wear by the pressure of the contacts; also one of ``gap_terms``.
     liner : ElasticLiner or None
     lobes : LobeTerm or None
-        Shape of arcs; one of ``gap_terms``.
+        Shape of arcs; also one of ``gap_terms``.
     uneven_drag : bool
-        True if a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.surfaces.patir_cheng`.
+        True if a pressure gradient exerts different shear forces on both surfaces; see
+        `exudyn_ehd.film.surfaces.patir_cheng`.
     """
 
     gap_terms: tuple[GapTerm, ...] = ()
@@ -146,7 +147,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     if touching:
         contacts = ContactFields(grid.shape, touching)
         if liner is not None:
-            # contact and film gap on a liner come out of its film solve
+            # on a liner, contact pressure and film gap are results of the film solve
             contacts.P, contacts.slope = [liner.contact_pressure], [liner.contact_slope]
     pose_scale = np.array([1.0 / c, 1.0 / c, R / c, R / c])
     return FilmParts(
@@ -194,7 +195,7 @@ class WearTerm:
 
 
 def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effects:
-    """The effects that a bearing names, in scaled form, on the grid that starts at ``start_angle``."""
+    """Collect the effects of a bearing's options, in scaled form, on the grid that starts at ``start_angle``, rad."""
     c, grid, law = bearing.radial_clearance, grid_of(bearing, start_angle), transform_of(bearing.lubricant)
     lobes = lobe_term(bearing.bore_arcs, grid, c) if bearing.bore_arcs else None
     gap_terms: list[GapTerm] = [] if lobes is None else [lobes]
@@ -248,8 +249,10 @@ def _touching_surfaces(
 def _rheology(
     bearing: JournalBearing, grid: FilmGrid
 ) -> tuple[OilTemperature | None, list[GapTerm], list[FluxEffect], list[ShearFactor]]:
-    """Thermal effect, growth of its walls, flux effects and shear factors of shear thinning or turbulence, and of a
-    temperature field."""
+    """Collect the thermal effect, the growth of its walls, flux effects and shear factors.
+
+    The last two come from shear thinning, turbulence and a temperature field.
+    """
     oil, spec, R, c = bearing.lubricant, bearing.thermal, bearing.journal_radius, bearing.radial_clearance
     laws: list[LinkLaw] = []
     if oil.shear_law is not None:
@@ -268,7 +271,7 @@ def _rheology(
         if bearing.turbulence is not None:
             laws[0].field = lumped.field = ViscosityField()
         return lumped, [], [*laws], [*laws]
-    # imported here: other films have no field of temperatures, or no profile across them
+    # imported here: only needed for a temperature field, or for temperatures across the film
     from exudyn_ehd.joint.heat.walls import FilmTemperature, Growth
 
     kind, field = FilmTemperature, ViscosityField()

@@ -1,17 +1,18 @@
-"""A bearing whose bore, journal or both are flexible: the rigid surfaces' model with ``delta = S q`` in the gap.
+"""Bearing with a flexible bore, a flexible journal or both: model of rigid surfaces with ``delta = S q`` in the gap.
 
 The motion (10,) of the rigid surfaces is followed by the bore's coordinates and rates,
 
     motion = [x, y, ..., omega, w, q_1 .. q_k, dq_1/dt .. dq_k/dt];
 
-the wrench on the journal is accompanied by the generalised loads Q = S^T (p A) on q, with those of the film's moment
-on a bush that it turns (`exudyn_ehd.solid.bush`). The bush resists q outside of this model; only
-`evaluate_steady` knows its `Elasticity` and finds the q with K q = Q, or the balance of a solid.
+Results are the wrench on the journal and the generalised loads Q = S^T (p A) on q. Q contains the loads of the film's
+moment on a bush that deflects by it (`exudyn_ehd.solid.bush`). The forces of the bush are not part of this model; only
+`evaluate_steady` uses its `Elasticity` and finds the q with K q = Q, or the balance of a solid.
 
-An elastic journal's coordinates follow the bore's: what its surface recedes by opens the gap alike, S = [S_bore,
-S_journal]. A body of revolution answers a pressure that stands by a displacement that stands, whatever its spin: its
-modes do not turn, and the gap changes by ``S q_t`` alone. Nor has the pressure a torque on its deflection,
-``int p d(C p)/d theta dA = 0`` for a compliance C that turns with p, so that friction is the shear's alone.
+The coordinates of an elastic journal follow those of the bore, S = [S_bore, S_journal]; an inward displacement of its
+surface opens the gap. An elastic journal is a body of revolution: under a pressure at rest its displacement is at rest,
+whatever its spin. So its modes do not turn, and the gap's rate by deflection is ``S q_t``. The pressure has no torque
+on the deflection, ``int p d(C p)/d theta dA = 0`` for a compliance C that is the same in all directions, so that
+friction is shear alone.
 """
 
 from __future__ import annotations
@@ -42,14 +43,16 @@ from exudyn_ehd.joint.tangent.bore import elastic_tangent, storage_tangent
 from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalTangent, complete, traction
 from exudyn_ehd.status import Status, warn_user
 
-# Travel of the journal's ends by tilt, over the clearance, from which modes that are even along the axis are no model.
+# Displacement of the journal's ends by tilt, over the clearance, above which a bush or journal with tilted=False, whose
+# modes are even along the axis, causes a warning.
 TILTED = 0.02
 
 
 class ClosingFilm(NamedTuple):
-    """State in which a film closes on the way to a position: the part of that position's eccentricity and tilt.
+    """Last film found on the way to a position without one.
 
-    ``gap``: minimum film thickness there, m, at the angle ``theta``, rad, and at ``z``, m.
+    ``part``: fraction of that position's eccentricity and tilt; ``gap``: minimum film thickness there, m, at the angle
+    ``theta``, rad, and at ``z``, m.
     """
 
     part: float
@@ -66,7 +69,7 @@ class ElasticEvaluation(Evaluation):
     ----------
     bore : BoreState
     closing : ClosingFilm or None
-        The last film that it found on the way to a place without one.
+        Last film found, if `ElasticBearingModel.evaluate_steady` found none at the position itself.
     """
 
     model: ElasticBearingModel = dataclasses.field(repr=False)
@@ -96,7 +99,7 @@ class ElasticEvaluation(Evaluation):
         return elastic_tangent(film, self.model.bore, *combinations)
 
     def steady_tangent(self, exact: bool = False) -> np.ndarray:
-        """d wrench / d motion (6, 10) with the bore following slowly; as `Evaluation.steady_tangent`."""
+        """d wrench / d motion (6, 10) with the bore in equilibrium; ``exact`` as in `Evaluation.steady_tangent`."""
         if self.is_central:
             return self.tangents_beside(exact).mean(axis=0)
         elasticity = self.model.elasticity
@@ -116,7 +119,7 @@ class ElasticEvaluation(Evaluation):
         return nodal
 
     def forces_at(self, x: np.ndarray) -> np.ndarray:
-        """`nodal_forces` on nodes at x (nodes, 3), completed to the opposite of the wrench on the journal."""
+        """`nodal_forces` on nodes at x (nodes, 3), completed so that they balance the wrench on the journal."""
         return complete(x, self.wrench, self.nodal_forces())
 
     def nodal_tangent(self) -> NodalTangent:
@@ -136,20 +139,21 @@ class ElasticEvaluation(Evaluation):
 
 
 def end_load(bore: Bore, grid: FilmGrid, pressures: tuple[float, float]) -> np.ndarray:
-    """Return the loads (k,) of the ends' pressure on the bore that the film's weights omit, N.
+    """Return the correction (k,) of the bore's loads by end pressures, N.
 
-    The vertices on the ends load the bore there alone. The pressure is therefore split into
-    ``p0 (1 - zeta) / 2 + p1 (1 + zeta) / 2``, zeta = 2 z / L, whose loads are integrated, and a rest that vanishes at
-    the ends. The first part has neither force nor moment on the journal.
+    In the film's sums, vertices on the ends load the bore at the ends only. The pressure is therefore split into
+    ``p0 (1 - zeta) / 2 + p1 (1 + zeta) / 2``, zeta = 2 z / L, and a rest that vanishes at the ends. The loads of the
+    first part are integrated; the correction is their difference to its sum. The first part has neither force nor
+    moment on the journal.
 
     Parameters
     ----------
     bore : Bore
-        On the grid.
+        Bore on the grid.
     grid : FilmGrid
-        The film's.
+        Grid of the film.
     pressures : (float, float)
-        At -L/2 and L/2, Pa.
+        Pressures at -L/2 and L/2, Pa.
     """
     half, R = float(grid.z[-1]), grid.reference_length
     exact = 2.0 * np.pi * half * (np.array(pressures) @ bore.end_shapes())
@@ -158,7 +162,7 @@ def end_load(bore: Bore, grid: FilmGrid, pressures: tuple[float, float]) -> np.n
 
 
 class ElasticBearingModel(BearingModel):
-    """Film between a rigid journal and a flexible bore.
+    """Film between a journal and a bore of which at least one is flexible.
 
     Parameters
     ----------
@@ -201,7 +205,7 @@ class ElasticBearingModel(BearingModel):
         return BoreForces(self.bore)
 
     def _journal(self, motion: np.ndarray, spin: float) -> JournalMotion:
-        """Take over a motion (10 + 2 k,); with (10,) the bore is undeformed and at rest."""
+        """Set the motion (10 + 2 k,); with (10,) the bore is undeformed and at rest."""
         motion, k = np.asarray(motion, dtype=float), self.bore.size
         if motion.size == MOTION_SIZE:
             motion = np.concatenate((motion, np.zeros(2 * k)))
@@ -270,9 +274,10 @@ class ElasticBearingModel(BearingModel):
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> ElasticEvaluation:
-        """Evaluate at a motion (10,) with the bore in equilibrium under the film, q_t = 0; the rest as for `evaluate`.
+        """Evaluate at a motion (10,) with the bore in equilibrium under the film, q_t = 0.
 
-        Starts from the coordinates of the last evaluation. NOT_CONVERGED if no equilibrium was found.
+        The other arguments are those of `evaluate`. The search starts from the coordinates of the last evaluation. The
+        status is NOT_CONVERGED if no equilibrium was found.
         """
         start = self._coordinates.copy()
         found = self.elasticity.settle(self, motion, (history, step, spin), start)

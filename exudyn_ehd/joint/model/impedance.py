@@ -1,6 +1,6 @@
-"""A bearing model from an impedance map.
+"""Bearing model from an impedance map, for aligned plain bearings.
 
-The same interface as `exudyn_ehd.joint.model.rigid`, for aligned plain bearings.
+The interface is that of `exudyn_ehd.joint.model.rigid`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap, impedance_nodes, impedance_wrench, places
 from exudyn_ehd.status import FilmError, Status
 
-# Tilt that counts as none: share of the minimum film thickness that it may take at the ends. Its effect on the force
-# is of second order.
+# Largest tilt that is ignored: reduction of the gap at the ends, over the minimum film thickness. Its effect on the
+# force is of second order. Larger: tilted journals are evaluated with a larger error instead of an error message.
 NEGLIGIBLE_TILT = 0.01
 _OUTCOMES = (Status.CONVERGED, Status.NOT_FINITE, Status.OUTSIDE_MAP, Status.NO_FILM)
 
@@ -36,7 +36,7 @@ class ImpedanceEvaluation:
         return self._tangent
 
     def quantities(self) -> dict[str, float]:
-        """Gap and its place, eccentricity ratio, friction, power loss and no contact load, by name, SI units."""
+        """Scalars by name, SI units: gap and its place, eccentricity ratio, friction, power loss, contact load 0."""
         x, y, _, _, x_t, y_t, _, _, omega, w = self.motion.tolist()
         eps = math.hypot(x, y) / self.bearing.radial_clearance
         out = {
@@ -60,7 +60,7 @@ class ImpedanceEvaluation:
         }
 
     def history(self) -> None:
-        """The map has no memory."""
+        """Return None: the map has no memory."""
         return None
 
 
@@ -110,7 +110,7 @@ class ImpedanceModel:
         Raises
         ------
         FilmError
-            If the journal is tilted by more than is negligible.
+            If the journal is tilted by more than `NEGLIGIBLE_TILT`.
         """
         motion = np.array(motion, dtype=float)
         wrench, tangent = np.empty(6), np.empty((6, 10))

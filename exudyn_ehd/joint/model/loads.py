@@ -35,7 +35,7 @@ def film_loads(
     limited: LimiterFields | None,
     recess: RecessShear | None = None,
 ) -> Loads:
-    """Loads of the film that ``parts.solver`` holds."""
+    """Loads of the film whose solution is in the buffers of ``parts.solver``."""
     s, g, P = parts.solver, parts.grid, oil.P
     integrals = np.empty(4)
     pressure_integrals(P, g.weight, g.gap_shapes, integrals)
@@ -44,7 +44,7 @@ def film_loads(
         pressed = P * g.weight
         extra_theta, extra_z = float(np.vdot(pressed, extra.slope_x)), float(np.vdot(pressed, extra.slope_z))
     if parts.liner is not None:
-        # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
+        # Poiseuille shear by the slope of the deflection: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
         half, signs = 0.5 * parts.liner.beta, np.tile([-1.0, 1.0], len(g.edges))
         around = float(g.width_x.sum()) if signs.size else 2.0 * math.pi
         extra_z += half * around * float(scales.ends[1] ** 2 - scales.ends[0] ** 2)
@@ -84,12 +84,12 @@ def film_loads(
 
 
 def pulls_unevenly(parts: FilmParts, limited: LimiterFields | None) -> bool:
-    """Return whether a pressure gradient pulls either surface by other than half its force on the true gap."""
+    """Return whether the shear of a pressure gradient on a surface differs from half its force on the true gap."""
     return parts.uneven_drag or limited is not None or (parts.liner is not None and parts.liner.limiter is not None)
 
 
 def drag_weights(parts: FilmParts, limited: LimiterFields | None) -> np.ndarray:
-    """Weights (2, n, m) of the pressures in E_x and E_z of the film that ``parts.solver`` holds."""
+    """Weights (2, n, m) of the pressures in the drag integrals E_x and E_z, for the film in ``parts.solver``."""
     s, liner = parts.solver, parts.liner
     gap, link = s.H, s.HF
     if limited is not None:
@@ -103,7 +103,7 @@ def drag_weights(parts: FilmParts, limited: LimiterFields | None) -> np.ndarray:
 
 
 def edge_forces(parts: FilmParts, scales: Scales) -> float:
-    """Integral over the edges of arcs of the gap times the pressure there, trailing edges' less leading edges'."""
+    """Integral of gap times pressure over the trailing edges of arcs, minus that over their leading edges."""
     if scales.edges is None:
         return 0.0
     return float(np.dot(scales.edges, parts.solver.H[parts.grid.edges.ravel()] @ parts.grid.weight_z))
@@ -116,7 +116,7 @@ def recess_of(
     thermal: OilTemperature | None,
     temperature: float | np.ndarray | None,
 ) -> RecessShear | None:
-    """Shear of the oil in supply areas at a film temperature, K; None where it does not count."""
+    """Shear of the oil in supply areas at a film temperature, K; None if no area has a depth."""
     supply = parts.supply
     if supply is None or all(area.depth is None for area in supply.supply):
         return None

@@ -1,4 +1,4 @@
-"""Results of a solved film: scalars in SI units (gap, peak, friction, losses, flows), and fields copied out of it."""
+"""Results of a solved film: scalars in SI units (gap, peak, friction, losses, flows), and copies of its fields."""
 
 from __future__ import annotations
 
@@ -27,31 +27,31 @@ def eccentricities(parts: FilmParts, pose: np.ndarray) -> dict[str, float]:
 def quantities(film: SolvedFilm, wear: Wear | None = None) -> dict[str, float]:
     """Scalars of a solved film.
 
-    The mechanical power that enters the film becomes heat of shear and pressure flow, and work on the oil that it
-    presses out,
+    The mechanical power that enters the film becomes heat of shear and pressure flow, and work on the oil that flows
+    out,
 
         power_loss = int (mu U^2 share / h + h^3 / (12 mu) |grad p|^2) dA
                      + sum (p - pc) outflow - pc dV/dt - w sum p h ds,
 
     with pc the cavity pressure, V the volume between the surfaces, ds along the ends (+ at z > 0, - at z < 0). It
-    follows from Reynolds' equation times p - pc, summed by parts; only the heat is left if ends and cavity are at gauge
-    0. The shear's term is that of the lands; supply areas with a depth have the one of `exudyn_ehd.film.supply.areas`.
-    The last term is the pressure on the ends' cross section, which the journal's wrench carries. Compressible oil takes
-    its elastic energy along: p - pc becomes the integral of dp / (rho / rho_0), the outflow the mass flow over rho_0,
-    and the rate of the energy that the film holds is added. What bends an elastic bore is not in it: that is the
-    bush's. Nor is the power that solids take up and give back,
+    follows from Reynolds' equation times p - pc, summed by parts. If ends and cavity are at gauge pressure 0, it is the
+    heat alone. The shear term is that of the lands; for supply areas with a depth see `exudyn_ehd.film.supply.areas`.
+    The last term is the power of the pressure on the ends' cross section, which is part of the journal's wrench. For
+    compressible oil, p - pc becomes the integral of dp / (rho / rho_0), the outflow the mass flow over rho_0, and the
+    rate of the elastic energy in the film is added. The power that deflects a flexible bore is not included, because it
+    enters the bush. Neither is the power that solids store and give back,
 
         stored_power = int (p + p_c) d(delta)/dt - (p_c + (1 - dh/dg) p) dg/dt dA
 
-    with a liner's deflection delta, the contact pressure p_c, the gap g of the surfaces and the gap h that the film
-    sees where a wall or asperities leave it another. Liner and contact pressure give back what they took. So does the
-    oil's pressure on what touching surfaces have closed of the gap, but at the pressure of that instant: a cycle may
-    leave a difference of either sign.
+    with a liner's deflection delta, the contact pressure p_c, the gap g of the surfaces and the film's gap h, which
+    differs from g where a wall or asperities limit it. Liner and contact pressure give back all stored energy. The oil
+    pressure on touching surfaces gives energy back at the pressure of that instant, so that over a cycle a difference
+    of either sign may remain.
 
-    Where nothing changes in time, ``stored_power`` is zero, and ``power_loss`` is the heat of `LumpedThermal` and the
-    work on the oil to rounding. In motion the two differ by the grid's error, of second order, since the power is made
-    of forces and the heat of flows, and by what backward Euler adds in a step. The field of `FilmEnergy` sums its heat
-    over control volumes: to the grid's error in all states.
+    In a steady state ``stored_power`` is zero, and ``power_loss`` is the heat of `LumpedThermal` plus the work on the
+    oil, to round-off. In motion they differ by the grid's error, of second order, since power is computed from forces
+    and heat from flows, and by the error of backward Euler in a step. `FilmEnergy` sums the heat over control volumes,
+    with the grid's error in all states.
 
     Returns
     -------
@@ -60,17 +60,18 @@ def quantities(film: SolvedFilm, wear: Wear | None = None) -> dict[str, float]:
         place, rad and m), ``eccentricity_ratio`` (at the mid-plane), ``largest_eccentricity_ratio`` (over the
         length), ``peak_pressure`` (Pa, from parabolas through the largest vertex) at ``peak_angle`` (rad),
         ``friction_torque`` (Nm, on the journal about its own axis, film and contact), ``friction_torque_unbroken``
-        (the film's with shear of its unbroken part only), ``friction_torque_bush`` (Nm, on the housing about the
-        bearing axis), ``power_loss`` (W, mechanical power that stays in film and contact), ``stored_power`` (W, that
-        liner and contact take up; negative: give back), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and
-        ``leakage_upper``, ``contact_load`` (N, vector sum of its pressure), ``contact_torque`` (Nm, its friction on the
-        journal about its own axis), ``contact_power_loss`` (W, the part of ``power_loss`` that this friction takes),
-        ``peak_contact_pressure`` (Pa, largest vertex); with supply areas also ``supply_flow`` (m3/s, out of all of
-        them), with arcs what enters at their edges; with restrictors ``lowest_pocket_pressure`` and
-        ``highest_pocket_pressure`` (Pa) of the areas behind them; with a thermal effect ``film_temperature`` (K, mean
-        over the area) and ``peak_temperature`` (K), with walls that conduct or two temperatures across the film
-        ``bush_temperature`` and ``journal_temperature`` (K, mean at the film) and ``clearance`` (m, radial, with what
-        they have grown by), with a liner or a flexible bore ``bore_displacement`` (m, the largest), with ``wear``
+        (Nm, of the film, with shear of its unbroken part only), ``friction_torque_bush`` (Nm, on the housing about the
+        bearing axis), ``power_loss`` (W, mechanical power dissipated in film and contact), ``stored_power`` (W, stored
+        by liner and contact; negative: given back), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and
+        ``leakage_upper``, ``contact_load`` (N, vector sum of the contact pressure), ``contact_torque`` (Nm, friction of
+        the contact on the journal about its own axis), ``contact_power_loss`` (W, part of ``power_loss`` by this
+        friction), ``peak_contact_pressure`` (Pa, largest vertex); with supply areas also ``supply_flow`` (m3/s, out of
+        all of them), which with arcs includes the oil that enters at their edges; with restrictors
+        ``lowest_pocket_pressure`` and ``highest_pocket_pressure`` (Pa) of the areas that they feed; with a thermal
+        effect ``film_temperature`` (K, mean over the area) and ``peak_temperature`` (K), with a sump
+        ``sump_temperature`` (K), with walls that conduct or two temperatures across the film ``bush_temperature`` and
+        ``journal_temperature`` (K, mean at the film) and ``clearance`` (m, radial, including the walls' growth), with a
+        liner or a flexible bore ``bore_displacement`` (m, the largest), with ``wear``
         ``wear_depth`` (m, the largest) and ``worn_volume`` (m3) of the bore at the end of the step.
     """
     p, w, area = film.parts, film.journal, film.grid.area
@@ -137,22 +138,22 @@ def _unbroken_couette(film: SolvedFilm) -> float:
 
 
 def supply_flows(film: SolvedFilm) -> np.ndarray:
-    """Return the inflow of every area of ``bearing.supply``, m3/s; empty without.
+    """Return the inflow of every area of ``bearing.supply``, m3/s; empty without areas and arcs.
 
-    Before them stands of every arc what enters at its leading and at its trailing edge, 0 where oil leaves.
+    With arcs, two values for each arc come first: the inflow at its leading and at its trailing edge, 0 for outflow.
     """
     p, flow_scale, edges = film.parts, film.parts.flow_scale, np.zeros(0)
     if p.grid.edges.size:
         k, P, (first, last) = p.solver.system.kx, p.solver.system.pressure, p.grid.edges.T
-        # less the flows from its corners along the ends, where pressures jump
+        # without the flows from the arc's corners along the ends, where pressures jump
         jumps = np.array((k[first] * (P[first] - P[first + 1]), k[last - 1] * (P[last] - P[last - 1])))
         fed = p.solver.inflow()[p.grid.edges.T].sum(axis=-1) - jumps[..., [0, -1]].sum(axis=-1)
         edges = fed.T.ravel().clip(0.0)
     if p.supply is None:
         return edges * flow_scale
-    # that of a turning area would change at once where an edge passes a column
+    # not for turning areas, whose flow would jump when an edge passes a column
     flows = p.supply.flows(p.solver.inflow(ended=not p.supply.rotating))
-    if p.solver.reservoirs is not None:  # what their balances count
+    if p.solver.reservoirs is not None:  # areas with a restrictor: the inflow of their balances
         flows = np.where(p.supply.fed, p.supply.flows(p.solver.inflow()), flows)
     return np.append(edges, flows) * flow_scale
 
@@ -168,17 +169,17 @@ def pocket_pressures(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
 
 
 def passing_flows(film: SolvedFilm) -> tuple[float, float]:
-    """Return the oil that enters the loaded zone around the bearing, and the fresh oil that passes the film, m3/s.
+    """Return the circumferential flow into the loaded zone, and the flow of fresh oil through the film, m3/s.
 
-    The first is, with the spin, through the section at the angle theta_1 at which the film begins,
+    The first is the flow, in the direction of the spin, through the section at the angle theta_1 where the film begins,
 
         Q_1 = int q_theta dz,    q_theta = fill U h / 2 - h^3 / (12 mu R) dp/dtheta,    U = R omega,
 
-    ISO 7902's flow at the entrance of the gap, Raimondi and Boyd's Q. Against the spin from the largest pressure on,
-    along its row of the grid, theta_1 is the first vertex at an edge of an arc or of a supply area, next to a cavity,
-    on the line of `MaximumGap`, or with the largest gap of the row; the flow is that of the link that begins there. nan
-    without a spin. The second one is `exudyn_ehd.joint.heat.power.OilFlows.exchanged`; oil leaves an arc for good, and
-    what enters at its edges is fresh.
+    the flow at the entrance of the gap in ISO 7902, Raimondi and Boyd's Q. theta_1 is searched from the largest
+    pressure, against the spin, along its row of the grid: the first vertex at an edge of an arc or of a supply area, in
+    a cavity, on the line of `MaximumGap`, or with the largest gap of the row. The flow is that of the link that begins
+    there; nan without a spin. The second one is `exudyn_ehd.joint.heat.power.OilFlows.exchanged`. In a bearing of arcs
+    it is the supply flow: oil that enters at the edges of an arc is fresh.
     """
     g, p, omega = film.grid, film.parts, film.journal.omega
     flows = OilFlows(film, getattr(p.bearing.thermal, "carry_over", 1.0))
@@ -199,7 +200,7 @@ def leakages(film: SolvedFilm) -> tuple[float, float]:
     s, g = film.solver, film.grid
     if not g.flows_along_z:
         return 0.0, 0.0
-    # the end rows of an arc carry oil from edge to edge, which balances of their vertices count
+    # not for arcs: balances of the vertices on their ends include oil that flows along the end from edge to edge
     if s.closure.conserves_mass and not g.edges.size:
         inflow = s.inflow()
         return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
@@ -213,8 +214,8 @@ def leakages(film: SolvedFilm) -> tuple[float, float]:
 def minimum_place(film: SolvedFilm) -> tuple[float, float]:
     """theta (rad, 0 to 2 pi) and z (m) of the minimum film thickness.
 
-    Of rigid cylinders exactly, at one of the ends, or at z = 0 where the gap is the same along the bearing; with a
-    profile, wear or an elastic bore the vertex of the smallest gap.
+    For rigid cylinders it is exact: at one of the ends, or at z = 0 if the gap is the same along the bearing. With a
+    profile, wear, arcs or a flexible bore it is the vertex with the smallest gap.
     """
     R, half = film.grid.reference_length, film.parts.half_length
     if film.extra is not None or film.parts.liner is not None or film.grid.edges.size:
@@ -316,7 +317,7 @@ def remembered(film: FilmRecord) -> History:
 def film_fields(
     film: SolvedFilm, wear: Wear | None, time: float, bush_displacement: np.ndarray | None = None
 ) -> FilmFields:
-    """The fields of a solved film, with what it has worn off the bore."""
+    """Return the fields of a solved film, including contact pressure and wear depth."""
     contacts = film.parts.contacts
     return FilmFields(
         **vars(film_record(film)),

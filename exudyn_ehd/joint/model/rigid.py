@@ -1,25 +1,24 @@
 """One lubricated bearing between two rigid surfaces as a pure function of its relative motion.
 
-Frame and motion as in `exudyn_ehd.joint.solved_film`. The wrench acts on the journal, moment about O; the housing
-receives exactly the opposite about the same point.
+Frame and motion are those of `exudyn_ehd.joint.solved_film`. The wrench acts on the journal, its moment is about O. The
+opposite wrench, about the same point, acts on the housing.
 
 Effects with a memory keep it in a `History`, which belongs to an accepted step: ``evaluate(motion, history, step)``
-reads the history at the start of the step and the time since, and ``evaluation.history()`` is the history at its end.
+uses the history at the start of the step and the step size, and ``evaluation.history()`` is the history at its end.
 
-At the exact centre the gap is the same all around, nothing presses, and the whole film is at its cavity pressure. A
-small motion of the aligned journal has one source in Reynolds' equation, the velocity V relative to the mean motion of
-the oil::
+At the exact centre the gap is the same all around, and the whole film is at its cavity pressure. A small motion of the
+aligned journal has one source in Reynolds' equation, the velocity V relative to the mean motion of the oil::
 
     div(h^3 / (12 mu) grad p) = -V . n,        V = dx/dt - (omega / 2) e_z x x,
 
-and the film ruptures where V opens the gap, however small V is. The pressure is homogeneous of degree one in V. In a
-bearing that is the same in all directions the force therefore is ``F = -c V`` with one coefficient (with a liner one
-matrix that commutes with rotations), and K and C are those of films a little off the centre, in any direction. The film
-at the centre itself has an unbroken solution, with twice the coefficient.
+and the film ruptures where V opens the gap, however small V is. The pressure is homogeneous of degree one in V. So in a
+bearing that is the same in all directions the force is ``F = -c V`` with one coefficient (with a liner, one matrix that
+commutes with rotations). Stiffness K and damping C are those of films slightly off the centre, in any direction. The
+tangent of the unbroken film at the centre itself would have twice the coefficient.
 
 In a bearing that is not the same in all directions, as with a groove at the cavity pressure, F is not linear in V, and
-no stiffness or damping exists. Tilts and displacements together are not linear either: derivatives to the tilt there
-are the mean over the directions of V.
+no stiffness or damping exists. The force is not linear in tilts and displacements together either: derivatives to the
+tilt at the centre are means over the directions of V.
 """
 
 from __future__ import annotations
@@ -66,12 +65,12 @@ class Evaluation:
     wrench : (6,) array
         Force (N) and moment about O (Nm) on the journal, joint frame; nan if there is no film at all.
     iterations : int
-        Linear solves spent.
+        Number of linear solves.
     minimum_gap : float
-        m; nan if the motion is not finite.
+        Minimum film thickness, m; nan if the motion is not finite.
     film : SolvedFilm or None
-        None with a ``status`` other than CONVERGED, but for films behind the end of a pressure law. What is asked of
-        it raises RuntimeError if the model has evaluated another state since.
+        None if ``status`` is not CONVERGED; an exception are films beyond the end of a pressure law (NO_PRESSURE).
+        Results that need it raise RuntimeError if the model has evaluated another state since.
     """
 
     status: Status
@@ -85,8 +84,8 @@ class Evaluation:
     def tangent(self, slow_motion: bool = False) -> np.ndarray:
         """d wrench / d motion (6, 10), exact for the current active set, from the stored factor; nan without a film.
 
-        ``slow_motion`` lets a liner follow the rates, for the damping of a steady state; without a liner it changes
-        nothing. At the exact centre the mean of films beside it.
+        ``slow_motion``: the deflection of a liner follows the rates, for the damping of a steady state; no effect
+        without a liner. At the exact centre it is the mean over films slightly off the centre.
         """
         if (film := self._current()) is None:
             return np.full((6, MOTION_SIZE), np.nan)
@@ -95,31 +94,32 @@ class Evaluation:
         return wrench_tangent(film, slow_motion)
 
     def steady_tangent(self, exact: bool = False) -> np.ndarray:
-        """d wrench / d motion (6, 10) after `BearingModel.evaluate_steady`; a flexible bore follows.
+        """d wrench / d motion (6, 10) after `BearingModel.evaluate_steady`, with a flexible bore in equilibrium.
 
-        Good enough for a search; ``exact`` for slow motions, which a liner follows too.
+        Without ``exact`` it may be an approximation that suffices for a search. ``exact``: tangent for slow motions, in
+        which a liner is in equilibrium too.
         """
         return self.tangent(slow_motion=exact)
 
     @property
     def is_central(self) -> bool:
-        """Return whether a film that may rupture lies at the exact centre and presses nowhere."""
+        """Return whether the journal is at the exact centre of a film that may rupture, with no pressure anywhere."""
         return self.film is not None and not self.model.needs_spin and self.film.is_central
 
     def beside(self, direction: int = 0) -> Evaluation:
-        """Evaluate the film a little off the centre in one of four directions, without spin moving that way."""
+        """Evaluate the film slightly off the centre in one of four directions; without spin also moving in it."""
         film, motion = self.film, np.append(np.zeros(8), self.motion[8:MOTION_SIZE])
         assert film is not None
-        # along a column of the grid Gümbel's linear pressure would be zero there, and its set undecided
+        # not along a column of the grid: Gümbel's linear pressure would be zero there, its active set undecided
         angle = 1.0 + 0.5 * math.pi * direction
         motion[:2] = BESIDE * film.parts.bearing.radial_clearance * np.array([math.cos(angle), math.sin(angle)])
         motion[4:6] = motion[:2] if motion[8] == 0.0 else 0.0
         return self.model.evaluate_steady(motion, film.history, film.step)
 
     def tangents_beside(self, exact: bool) -> np.ndarray:
-        """Steady tangents (4, 6, 10) a little off the centre in four directions, ``exact`` or not.
+        """Steady tangents (4, 6, 10) slightly off the centre in four directions, ``exact`` or not.
 
-        Buffers and records of the evaluation stay as they are.
+        The evaluation stays valid: its film is solved again, so that the buffers contain it.
         """
         film, tangents = self.solved, [self.beside(direction).steady_tangent(exact) for direction in range(4)]
         self.model.evaluate_steady(self.motion[:MOTION_SIZE], film.history, film.step)
@@ -134,11 +134,11 @@ class Evaluation:
         return quantities(film, self.model.effects.wear)
 
     def fields(self, time: float, bush_displacement: np.ndarray | None = None) -> FilmFields:
-        """Return the fields of this state, which has a film."""
+        """Return the fields of this state, which must have a film."""
         return film_fields(self.solved, self.model.effects.wear, time, bush_displacement)
 
     def history(self) -> History | None:
-        """Return the bearing's memory after this state, if it is accepted; None without effects that remember.
+        """Return the bearing's history at the end of this step, for an accepted step; None without a memory.
 
         Raises
         ------
@@ -150,14 +150,17 @@ class Evaluation:
         return self.model.next_history(film)
 
     def heat_with(self, heat_of_faces: Callable[[], FacesHeat]) -> SolvedFilm | None:
-        """Return the film with the heat of films on end faces in its balance, for which alone they are asked."""
+        """Return the film with the heat of the thrust faces in its heat balance.
+
+        The function ``heat_of_faces`` is called only if the bearing has a thermal effect.
+        """
         if self.film is not None and self.model.effects.thermal is not None:
             self.film = self.film._replace(beside=heat_of_faces())
         return self.film
 
     @property
     def solved(self) -> SolvedFilm:
-        """The film of a state that has one, which must be the model's last."""
+        """Film of this state, which must have one; RuntimeError if the model has evaluated another state since."""
         film = self._current()
         assert film is not None
         return film
@@ -169,7 +172,7 @@ class Evaluation:
 
 
 class BearingModel:
-    """Film between a rigid journal and a rigid bore, with the effects that a scene names.
+    """Film between a rigid journal and a rigid bore, with the effects of its options.
 
     Parameters
     ----------
@@ -192,14 +195,14 @@ class BearingModel:
         self.remembers = self.remembers or self.effects.thermal is not None or self.effects.wear is not None
         self._known = np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure, *bearing.edge_pressures])
         self._scale = p.motion_scale[:8]
-        # what a flexible bore adds to the gap, and the slopes of all that is added
+        # displacement of a flexible bore and its rate, scaled
         self._displacement: np.ndarray | None = None
         self._rate = p.solver.nothing
         self._plain = not self.flexible and self.effects == Effects() and is_plain(p)
         self._set_viscosity(1.0)
 
     def _set_viscosity(self, ratio: float) -> None:
-        """Scale the film to ``ratio`` times the reference viscosity, that of one temperature for the whole film."""
+        """Set the scales for ``ratio`` times the reference viscosity."""
         b, p, law = self.bearing, self.parts, self.effects.pressure_law
         mu, R, c = ratio * b.lubricant.viscosity, b.journal_radius, b.radial_clearance
         pressure = 12.0 * mu * R**2 / c**2
@@ -207,18 +210,18 @@ class BearingModel:
         self.viscosity_ratio = ratio
         edges = known[3:] * np.tile((-1.0, 1.0), len(p.grid.edges)) if known[3:].any() else None
         self.scales = Scales(pressure, pressure * R**2, mu * R**2 / c, known[:2], float(known[2]), edges)
-        # what the solver is told: the transformed pressures of a pressure law
+        # prescribed pressures for the solver, transformed by a pressure law
         self._prescribed = known if law is None else law.transform(self._known) / pressure
         if p.liner is not None and self.effects.liner is not None:
             p.liner.beta = self.effects.liner.compliance * pressure / c
         p.solver.pressure_scale = pressure
 
     def forget(self) -> None:
-        """Drop the warm start. It never changes a result, only the time it takes."""
+        """Drop the warm start. It never changes a result, only the computing time."""
         self.solver.forget()
 
     def initial_history(self, motion: np.ndarray) -> History | None:
-        """History of a flooded bearing (every gap full of oil) at this motion; None without effects that remember."""
+        """History of a flooded bearing (every gap full of oil) at this motion; None without a memory."""
         if not self.remembers:
             return None
         self.parts.evaluations += 1
@@ -253,7 +256,7 @@ class BearingModel:
             pockets=s.pockets,
         )
         if void is not None and film.history is not None:
-            for term in effects.gap_terms:  # wear and growth, which the film does not see before the next step
+            for term in effects.gap_terms:  # changes by wear and growth, which act in the next step
                 void += term.field(new) - term.field(old)
         return new
 
@@ -267,9 +270,9 @@ class BearingModel:
         motion : (10,) array
             Relative motion in the joint frame, SI units; see `exudyn_ehd.joint.solved_film`.
         history : History, optional
-            At the last accepted step; None asks for the steady film.
+            History at the last accepted step; None: the film is a steady one.
         step : float
-            Time since then, s; 0 asks for the force at that very instant.
+            Time since the last accepted step, s; 0: the force at that instant.
         spin : float
             Angle of the journal against the housing about the bearing's axis, rad; only read if ``needs_spin``
             (supply areas in the journal).
@@ -277,8 +280,8 @@ class BearingModel:
         Returns
         -------
         Evaluation
-            With ``status`` other than CONVERGED the wrench is nan, or with NO_PRESSURE that of a pressure law that
-            goes on behind its end: no solution, but a way back for Newton's method.
+            If ``status`` is not CONVERGED, the wrench is nan. With NO_PRESSURE it may be finite: it is computed with a
+            continuation of the pressure law beyond its end. It is no solution, but lets Newton's method return.
         """
         p, c = self.parts, self.bearing.radial_clearance
         p.evaluations += 1
@@ -323,7 +326,7 @@ class BearingModel:
     def _bore_state(
         self, journal: JournalMotion, oil: OilFields, pressing: ContactFields | None, moment: float
     ) -> BoreState | None:
-        """A flexible bore under this film, which turns the journal with a moment, Nm; None for a rigid one."""
+        """State of a flexible bore under this film, whose moment on the journal is ``moment``, Nm; None if rigid."""
         return None
 
     def _journal(self, motion: np.ndarray, spin: float) -> JournalMotion:
@@ -332,7 +335,7 @@ class BearingModel:
         return JournalMotion(motion, scaled[:4], scaled[4:], float(motion[8]), float(motion[9]))
 
     def _set_temperature(self, history: History | None) -> tuple[float | np.ndarray | None, Walls | None]:
-        """Bring the viscosity to the temperature at the start of the step, which comes back, with that of walls."""
+        """Set the viscosity to that of the start-of-step temperature; return this temperature and that of walls."""
         thermal = self.effects.thermal
         if thermal is None:
             return None, None
@@ -345,9 +348,9 @@ class BearingModel:
     def _set_gap(
         self, journal: JournalMotion, history: History | None
     ) -> tuple[float, ExtraGap | None, ContactFields | None, LimiterFields | None]:
-        """Gaps of a motion into the film solver.
+        """Write the gaps of a motion into the solver's buffers.
 
-        Returns the smallest, scaled, with the record's fields of these names.
+        Returns the smallest gap, scaled, and ``extra``, ``pressing`` and ``limited`` of `SolvedFilm`.
         """
         s, p, at = self.solver, self.parts, self.grid.directions
         smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, p.grid.closed, s.H, s.HF, s.H_t)
@@ -365,7 +368,7 @@ class BearingModel:
         return smallest, extra, pressing, limited
 
     def _add_gap_terms(self, history: History | None) -> tuple[float, ExtraGap]:
-        """Add the gap terms and a bore's displacement; returns the smallest gap and what was added."""
+        """Add the gap terms and a bore's displacement; return the smallest gap, scaled, and the added fields."""
         s = self.solver
         surfaces = [term.field(history) for term in self.effects.gap_terms]
         fields = surfaces if self._displacement is None else [*surfaces, self._displacement]
@@ -379,7 +382,7 @@ class BearingModel:
         return smallest, ExtraGap(height, slopes[0], slopes[1], surfaces)
 
     def _solve(self, journal: JournalMotion, history: History | None, step: float) -> tuple[Status, int]:
-        """Solve for the gaps in the solver's buffers, with the known pressures."""
+        """Solve the film for the gaps in the solver's buffers, with the prescribed pressures."""
         p, law = self.parts, self.effects.pressure_law
         P, past = self.solver.pressure, History() if history is None else history
         P[:, 0], P[:, -1], cavity, *edges = self._prescribed.tolist()
@@ -398,8 +401,8 @@ class BearingModel:
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> Evaluation:
-        """Evaluate the film at a motion (10,) that lasts.
+        """Evaluate the film at a motion (10,), with a flexible bore in equilibrium.
 
-        A flexible bore settles under it. The rest as for `evaluate`.
+        The other arguments are those of `evaluate`.
         """
         return self.evaluate(motion, history, step, spin)

@@ -2,8 +2,8 @@
 
 Module map
 ----------
-bearing  `SphericalBearing`, what a scene writes; the film grid of a patch of a sphere
+bearing  `SphericalBearing`, the description of a ball joint; film grid of a patch of a sphere
 film     one film: gaps, solution, loads on the ball, heat
-model    evaluations, what a film remembers, exact tangent
-steady   prescribed position; audit: what mattered in its films, and what they leave out
+model    evaluations, memory of a film, exact tangent
+steady   film at a prescribed position; audit of a ball joint
 """

@@ -7,15 +7,15 @@ s = ln tan(chi / 2) the map (phi, s) of the sphere is conformal, so that
 
     sin^2 chi div(h^3 grad p) = d_phi(h^3 d_phi p) + d_s(h^3 d_s p) :
 
-links conduct as on a plane, and only areas know of the sphere. A `FilmGrid` with theta = phi and z = s is therefore
-that of the sphere, for every solver. Rows are stretched in chi towards the open edges, where a ball that leans on one
-has its steepest pressures, as those of cylindrical films (`exudyn_ehd.film.grid`). Control volumes end half-way between
-rows, with the width d_chi / sin(chi) in s. A patch that is closed at the pole has its first row half an interval from
-it, so that the control volumes there end at the pole in a point, through which nothing flows: no cell of its own is
-needed, and the scheme stays of second order.
+links conduct as on a plane, and only areas differ from the plane. So every solver can use a `FilmGrid` with theta = phi
+and z = s. Rows are closer in chi near the open edges, where a ball that nearly touches an edge has its steepest
+pressures, as in cylindrical films (`exudyn_ehd.film.grid`). Control volumes end half-way between rows, with the width
+d_chi / sin(chi) in s. In a patch that is closed at the pole the first row is half an interval from the pole. Its
+control volumes end in a point there, through which nothing flows: no cell at the pole is needed, and the scheme is of
+second order.
 
 Integrals over control volumes (area, normal, products of two components of the normal) are exact, so that the areas
-and the drag of a centred ball hold to rounding on any grid.
+and the drag of a centred ball are exact to round-off on any grid.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drops, to_ends
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_count, require_number, require_type, require_vector
 
-# Rows of the six second moments xx, yy, zz, xy, xz, yz in the symmetric matrix of them.
+# Symmetric matrix of second moments: index of each entry in the list xx, yy, zz, xy, xz, yz.
 COMPONENTS = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
 
 
@@ -81,7 +81,7 @@ def sphere_patch(radius: float, angles: tuple[float, float], n_phi: int, n_chi: 
     """Patch of a sphere of ``radius`` (m) between two colatitudes (rad), with ``n_chi`` + 1 rows."""
     first, last = angles
     closed = first == 0.0
-    # from the middle of the patch, which of a closed one is the pole, to its edges
+    # from the middle of the patch to its edges; the middle of a closed patch is the pole
     middle, half = (0.0, last) if closed else (0.5 * (first + last), 0.5 * (last - first))
     share = (np.arange(n_chi + 1) + 0.5) / (n_chi + 0.5) if closed else np.linspace(-1.0, 1.0, n_chi + 1)
     quarter = 0.5 * math.pi * FiniteLength.stretch
@@ -117,22 +117,22 @@ def sphere_patch(radius: float, angles: tuple[float, float], n_phi: int, n_chi: 
 
 
 class SphereFlow(FluxEffect):
-    """Couette flows over the edges of the control volumes, of speeds that differ from link to link.
+    """Couette flows over the edges of the control volumes, with surface speeds that differ from link to link.
 
     The flow over an edge with the normal m is, in units of R^2 c and with the scaled gap H = 1 - e n / c,
 
         f = 1/2 int (w x n) m H ds = w (T H_l + S C e),
         T = 1/2 int n x m ds,    C = -1/2 int (n x m) (n - n_l) ds / c,
 
-    with the gap H_l of the link and its direction n_l. That is exact: what leaves a full control volume is
-    ``-N (e x w) / (2 c)``, and nothing at an even gap, at the pole too. S is the slope of a limited gap, 1 of others.
+    with the gap H_l of the link and its direction n_l. This is exact: the net outflow of a full control volume is
+    ``-N (e x w) / (2 c)``, and zero at an even gap, also at the pole. S is the slope of a limited gap, else 1.
 
     Attributes
     ----------
     turn, lean : (2, 3, n, m) and (2, 3, 3, n, m) arrays
         T and C on the links along phi and along chi.
     along, rest : (2, n, m) arrays
-        w T and w C e of the last motion, 1/s.
+        Products w T and w C e of the last motion, 1/s.
     by_place : (2, 3, n, m) array
         w C, 1/(m s).
     slope : (2, n, m) array
@@ -146,7 +146,7 @@ class SphereFlow(FluxEffect):
         ends = np.stack([patch.link_normals, 0.5 * (patch.normals + np.roll(patch.normals, -1, 2))])
         self.widths = patch.grid.width_z, patch.grid.width_x[:, None]
         self.turn, self.lean = np.zeros((2, 3, *patch.grid.shape)), np.zeros((2, 3, 3, *patch.grid.shape))
-        # of edges up to 0.5 rad exact to round-off
+        # exact to round-off for edges up to 0.5 rad
         for at, weight in zip(*np.polynomial.legendre.leggauss(6), strict=True):
             # meridians, and circles of latitude, along which n x m ds is minus d n and d n
             chi, around = below + 0.5 * (1.0 + at) * (faces - below), phi + 0.5 * at * step
@@ -160,18 +160,18 @@ class SphereFlow(FluxEffect):
             self.lean -= moved[:, :, None] * (n - ends)[:, None] / clearance
 
     def take(self, spin: np.ndarray, place: np.ndarray, slope: np.ndarray) -> tuple[float, float]:
-        """Take over w (3,), e (3,) and S; returns the scaled speeds of `FilmSolver.solve`, 1/s."""
+        """Set w (3,), e (3,) and S; return the scaled speeds for `FilmSolver.solve`, 1/s."""
         self.along, self.by_place = np.tensordot(spin, self.turn, (0, 1)), np.tensordot(spin, self.lean, (0, 1))
         self.place, self.slope, self.rest = place, slope, np.tensordot(place, self.by_place, (0, 1))
-        # about the socket's axis oil goes round in the rows
+        # a spin about the socket's axis moves oil along the rows only
         return 0.5 * float(np.linalg.norm(spin)), 0.5 * math.hypot(spin[0], spin[1])
 
     def flows(self, gap_x: np.ndarray, gap_z: np.ndarray) -> np.ndarray:
-        """Couette flows (2, n, m) of a full film over the links, behind the last row over the last edge."""
+        """Couette flows (2, n, m) of a full film over the links; the last row has the flows over the last edge."""
         return np.asarray(self.along * np.stack([gap_x, gap_z]) + self.slope * self.rest)
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
-        """Set the carriers with their derivatives, over the speeds and the widths with which the solver takes them."""
+        """Set the carriers and their derivatives, divided by the speeds and widths by which the solver multiplies."""
         carriers = zip((vx, vz), self.widths, (flux.cx, flux.cz), (flux.cx_h, flux.cz_h), strict=True)
         flows = self.flows(gap_x, gap_z)
         for k, (v, width, out, slope_out) in enumerate(carriers):
@@ -183,8 +183,8 @@ class SphereFlow(FluxEffect):
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Derivatives to w (k, 3), to e (k, 3) and, through S, to the slope at the vertices (k, n, m).
 
-        Of sums with ``weights`` (k, n m) of what leaves the vertices by ``taken`` (2, n m) times f; the links' gaps
-        (n, m) along phi and chi are held.
+        They are derivatives of sums, with ``weights`` (k, n m), of the outflow of the vertices by ``taken`` (2, n m)
+        times f. The links' gaps (n, m) along phi and chi are constant.
         """
         shape, by_spin = gaps[0].shape, self.turn * np.stack(gaps)[:, None]
         by_flow = np.stack([drops(own.reshape(shape)) for own in weights]) * taken.reshape(2, *shape)
@@ -272,8 +272,8 @@ class SphericalBearing(Checked):
     radial_clearance : float
         c = socket radius - ball radius, m; at most 0.05 R.
     lubricant : Lubricant
-        Its ``pressure_law`` acts, and with ``thermal`` its ``temperature_law``, which else only sets the viscosity at
-        ``lubricant.temperature``, and its ``density_law``. A ``shear_law`` raises `InputError`.
+        Lubricant with its ``pressure_law`` and ``density_law``. Its ``temperature_law`` acts with ``thermal``; without,
+        it only sets the viscosity at ``lubricant.temperature``. A ``shear_law`` raises `InputError`.
     socket_angles : (float, float), default (0.0, pi / 2)
         Colatitudes from +z at which the socket begins and ends, rad; it begins at 0 (closed at the pole) or, with an
         opening around the axis, from 0.05 on.
@@ -282,22 +282,22 @@ class SphericalBearing(Checked):
     n_chi : int, default 24
         Intervals from edge to edge, or from the pole to the edge of a socket that is closed there; at least 4.
     cavitation : FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams or Closure, default SwiftStieber()
-        Cavitation model. Its line lies on vertices; with ``line_in_cells=True`` it lies inside the cells, and the error
-        of stiffness and damping falls from 7 to 1 %. Its ``cavity_pressure`` must not be above 0, the ambient pressure.
-        `ElrodAdams` counts the oil, which moves with the mean speed of the surfaces: steady forces are up to 3 % off,
-        and 16 % where much void returns to the film (on 96 x 48, 1.2 and 6 %). With it, or with a ``density_law``, the
-        line lies on vertices. `Closure` is one of your own.
+        Cavitation model. Its rupture line lies on vertices; with ``line_in_cells=True`` it lies inside the cells, and
+        the error of stiffness and damping falls from 7 to 1 %. Its ``cavity_pressure`` must not be above 0, the ambient
+        pressure. `ElrodAdams` conserves the oil, which moves with the mean speed of the surfaces: the error of steady
+        forces is up to 3 %, and 16 % where much void returns to the film (on 96 x 48, 1.2 and 6 %). With `ElrodAdams`,
+        or with a ``density_law``, the line lies on vertices. `Closure` is a cavitation model of your own.
     contact : RegularisedWall or None, default None
         Smooth wall that carries load before the gap vanishes; None: a vanishing gap ends the run with an error.
     thermal : LumpedThermal or None, default None
-        One temperature of the film, whose heat is that of shear and pressure flow; what flows out over the edges, or is
-        lost in cavities, is replaced by oil of the supply temperature, and the film's volume is the socket's area times
-        the clearance. None: isothermal, at ``lubricant.temperature``. `FilmEnergy` is not supported.
+        One temperature of the film, heated by shear and pressure flow. Oil that flows out over the edges, or is lost in
+        cavities, is replaced by oil of the supply temperature. The film's volume is the socket's area times the
+        clearance. None: isothermal, at ``lubricant.temperature``. `FilmEnergy` is not supported.
 
     Raises
     ------
     InputError
-        For values that can't be meant, laws of the oil and closures that this film does not carry.
+        For values outside their ranges, and for laws of the oil and closures that this film does not support.
 
     Examples
     --------
@@ -316,7 +316,7 @@ class SphericalBearing(Checked):
     contact: RegularisedWall | None = None
     thermal: LumpedThermal | None = None
 
-    # what a joint's watches and audits ask of every bearing
+    # attributes of every bearing that a joint's checks and audits read
     bush = yielding = journal = asperity = roughness = wear = film = turbulence = inlet = None
     profiles = supply = bore_arcs = ()
     end_pressures, squeeze = (0.0, 0.0), True
@@ -381,7 +381,7 @@ class SphericalBearing(Checked):
             )
 
     def gap_normals(self) -> np.ndarray:
-        """Directions (k, 4), the last column 0, from which to tell how near the ball is to the socket."""
+        """Directions (k, 4), the last column 0, along which the distance of the ball from the socket is computed."""
         normals = sphere_patch(1.0, self.socket_angles, self.n_phi, self.n_chi).normals.reshape(3, -1)
         return np.vstack((normals, 0.0 * normals[:1])).T
 
@@ -395,7 +395,7 @@ class SphericalBearing(Checked):
 
     @property
     def journal_radius(self) -> float:
-        """The ball's radius, by the name that it has in cylindrical bearings, m."""
+        """Radius of the ball, m, under the name that cylindrical bearings use."""
         return self.ball_radius
 
     @property

@@ -5,20 +5,20 @@ ball's centre at e, its velocity v and its angular velocity w, both as seen from
 
     h = c - e n,        dh/dt = -v n,
 
-and the mean velocity of the surfaces w x R n / 2, which has no divergence on the sphere. Reynolds' equation then is
+and the mean velocity of the surfaces is w x R n / 2, which has no divergence on the sphere. Reynolds' equation then is
 
     div(h^3 / (12 mu) grad p) = w x R n / 2 grad h + dh/dt = -n u,        u = v + e x w / 2 :
 
-in a frame that turns with half the relative angular velocity there is squeeze alone. Where the film conserves mass, oil
-fills a part of the gap only, and with a density law it is not equally dense: what moves with the mean velocity differs
-from place to place. The links then have Couette flows, and u = v. In a full film of constant density both are the same
-to round-off (`exudyn_ehd.joint.spherical.bearing.SphereFlow`). The edges have p = 0. Only what is relative counts: a
-motion of ball and socket together changes none of it. Left out, as in every Reynolds film, is what is c / R of what is
-there: the ball's translation along the film in the flow, and the pressure's shear forces.
+in a frame that turns with half the relative angular velocity the only source is squeeze. If the film conserves mass or
+has a density law, fill or density vary with the position. The links then have Couette flows, and u = v. In a full film
+of constant density both formulations agree to round-off (`exudyn_ehd.joint.spherical.bearing.SphereFlow`). The edges
+have p = 0. Only relative motions count: a motion of ball and socket together has no effect. As in every Reynolds film,
+terms of the relative size c / R are omitted: the ball's translation along the film in the flow, and the shear forces of
+the pressure.
 
-With u = 0 (a ball at rest, or one that spins about the line to its place) nothing presses. The pressure is homogeneous
-of degree one in u, so that a film that ruptures at the edges' pressure has one-sided derivatives only: it carries where
-u closes the gap.
+With u = 0 (a ball at rest, or one that spins about the line from O to its centre) the film has no pressure. The
+pressure is homogeneous of degree one in u. So a film that ruptures at the edges' pressure has one-sided derivatives
+only: it carries where u closes the gap.
 
 Loads on the ball, N and A the integrals of n and of 1 over the control volumes, f = 12 mu R^4 / c^2, P = p c^2 / (12 mu
 R^2), H = h / c:
@@ -26,21 +26,21 @@ R^2), H = h / c:
     pressure    F_p = -f sum P N, through the ball's centre
     Couette     F_c = -mu R^2 / c (K v + R w x a),  T_c = -mu R^2 / c (R a x v + R^2 K w),
                 a = sum n / H dA,  K = sum (1 - n n) / H dA : a symmetric, dissipative pair
-    Poiseuille  T_p = (f / 2) e x sum P N: of the shear -(h / 2) grad p by parts. The socket has the same torque about
-                its own centre, so that both halves of e x F_p are found and all moments cancel.
+    Poiseuille  T_p = (f / 2) e x sum P N, from the shear -(h / 2) grad p, integrated by parts. The same torque acts on
+                the socket about its own centre. Each torque is half of e x F_p, so that all moments cancel.
 
-The wrench is F = F_p + F_c and the moment about O, T_c + T_p + e x F; the socket gets minus that about O. With the same
-N in loads and sources, work and heat match link by link: -(F v + T w) = sum H^3 (dP)^2 + Couette's heat >= 0.
+The wrench is F = F_p + F_c and the moment about O, T_c + T_p + e x F; minus this wrench about O acts on the socket.
+With the same N in loads and sources, work and heat agree: -(F v + T w) = sum H^3 (dP)^2 + Couette's heat >= 0.
 
-Where a wall limits the film's gap to H(g), g the true one, sources and T_p carry dH/dg (closed gaps in
-`exudyn_ehd.film.surfaces.patir_cheng`); what the slopes leave of the pressure goes from solid to solid, without torque.
+If a wall limits the film's gap to H(g), with the true gap g, sources and T_p contain the factor dH/dg (closed gaps in
+`exudyn_ehd.film.surfaces.patir_cheng`). The share 1 - dH/dg of the pressure acts from solid to solid, without torque.
 
-With a pressure law the solver's unknown is q, dq = dp mu_0 / mu(p) (`exudyn_ehd.film.lubricant.pressure_viscosity`),
-loads take p(q) and the viscosity of every vertex; heat is sum H^3 dq dP. With a density law q is that of
-`exudyn_ehd.film.lubricant.density`, and the heat has the flow work in place of P.
+With a pressure law the solver's unknown is q, dq = dp mu_0 / mu(p) (`exudyn_ehd.film.lubricant.pressure_viscosity`).
+Loads are computed from p(q) and the viscosity of every vertex; heat is sum H^3 dq dP. With a density law q is that of
+`exudyn_ehd.film.lubricant.density`, and the flow work replaces P in the heat.
 
-The pressure comes from the film solver of cylindrical bearings on the grid of `exudyn_ehd.joint.spherical.bearing`:
-with -N u / c for the storage of a control volume it needs no other input. Second order in both directions.
+The pressure comes from the film solver of cylindrical bearings on the grid of `exudyn_ehd.joint.spherical.bearing`. Its
+input is the storage -N u / c of each control volume. The scheme is of second order in both directions.
 """
 
 from __future__ import annotations
@@ -65,9 +65,9 @@ from exudyn_ehd.status import Status
 
 PLACE, VELOCITY, SPIN = slice(0, 3), slice(4, 7), slice(8, 11)
 SIZE = SPIN.stop
-"""Motion: place (m), 0, velocity (m/s), 0, angular velocity (rad/s); `exudyn_ehd.joint.step_rates` knows four places
-and four rates."""
-# Place (3,), velocity and angular velocity (6,) of a motion as products with it.
+"""Motion: place (m), 0, velocity (m/s), 0, angular velocity (rad/s). The zeros are there because
+`exudyn_ehd.joint.step_rates` expects four places and four rates."""
+# Matrices that select the place (3,), and velocity and angular velocity (6,), of a motion.
 PLACES, SPEEDS = np.eye(SIZE)[PLACE], np.eye(SIZE)[np.r_[VELOCITY, SPIN]]
 
 
@@ -82,21 +82,21 @@ class BallFilm(NamedTuple):
     ----------
     pressure : Pa; gap of the film : m; unbroken : bool; fill : oil over gap, 1 unless the film conserves mass
     wrench : (6,) array
-        On the ball, moment about O.
+        Wrench on the ball, moment about O.
     torque : (3,) array
-        On the ball about its centre, N m.
+        Torque on the ball about its centre, N m.
     contact : (3,) array
         Force of the wall in ``wrench``, N.
     drag : (6, 6) array
-        Force and torque of the Couette shear by velocity and angular velocity.
-    stored_power : W, taken up by the wall
+        Force and torque of the Couette shear per velocity and angular velocity.
+    stored_power : W, stored by the wall
     pressure_q, ratio, ratio_q : (n m,) arrays or floats
         Derivative of the pressure to the solver's unknown; viscosity over that at ambient pressure, and its derivative.
     motion : (11,) array
-    temperature : K, None of an isothermal film
+    temperature : K, None for an isothermal film
     history, step : History, float
-        At the start of the step, and the time since then, s.
-    parts, grid : the model and its grid, for what reads journals' films too
+        History at the start of the step, and the time since then, s.
+    parts, grid : model and its grid, under the names that `SolvedFilm` has
     """
 
     pressure: np.ndarray
@@ -122,7 +122,7 @@ class BallFilm(NamedTuple):
 
 
 class SphericalFilm:
-    """Film between a rigid ball and a rigid socket, in buffers that stay.
+    """Film between a rigid ball and a rigid socket, with buffers that all evaluations use.
 
     Parameters
     ----------
@@ -138,12 +138,12 @@ class SphericalFilm:
         self.law, self._cavity, oil = transform_of(b.lubricant), b.cavitation.cavity_pressure, b.lubricant
         density = self.law if isinstance(self.law, CompressibleLaw) else None
         self.remembers = self.remembers_mass or b.thermal is not None
-        # Couette flows of a full film; the solver needs them where fill or density differ from place to place
+        # Couette flows of a full film; the solver needs them if fill or density vary with the position
         self.couette = SphereFlow(p, c) if self.remembers or density is not None else None
         self.flow = self.couette if self.remembers_mass or density is not None else None
         flows = () if self.flow is None else (self.flow,)
         if self.flow is not None:
-            p.grid.area[:] = p.area  # what control volumes hold is above them on the sphere
+            p.grid.area[:] = p.area  # the content of control volumes is that on the sphere
         self.solver = FilmSolver(p.grid, b.cavitation, flux_effects=flows, density=density)
         self.thermal, volume = None, self.flow_scale * float(p.area.sum())
         if b.thermal is not None:
@@ -172,9 +172,9 @@ class SphericalFilm:
     def heat_and_exchange(self, film: BallFilm, carry_over: float) -> tuple[float, float]:
         """Heat of shear and pressure flow, W, and the scaled flow that leaves and is replaced by oil from outside.
 
-        Out of a socket flows over its edges what their control volumes do not keep of the flows on their links, drag
-        included. What a closure without account of its oil loses in cavities leaves, too, but for the share
-        ``carry_over`` of what it finds there, as in `exudyn_ehd.joint.heat.power.OilFlows`.
+        The flow out of a socket over its edges is the balance of the control volumes there, with Couette flows. With a
+        closure that does not conserve mass, oil lost in cavities leaves too, less the share ``carry_over`` of the oil
+        found there, as in `exudyn_ehd.joint.heat.power.OilFlows`.
         """
         s, y, flow, speeds = self.solver, self.solver.system, self.couette, SPEEDS @ film.motion
         assert flow is not None
@@ -198,7 +198,7 @@ class SphericalFilm:
     def _film(
         self, motion: np.ndarray, gap: float, temperature: float | None, past: History, step: float
     ) -> tuple[Status, BallFilm | None]:
-        """Film of a motion with the smallest gap, m; None with a status that says why there is none."""
+        """Return the status and the film of a motion with the smallest gap, m; None without a film."""
         if math.isnan(gap):
             return Status.NOT_FINITE, None
         if not gap > 0.0 and self.limiter is None:
@@ -214,9 +214,9 @@ class SphericalFilm:
         return status, self._loads(motion, oil, (temperature, past, step))
 
     def _set_gap(self, motion: np.ndarray) -> tuple[float, float]:
-        """Gap and storage of the film into the solver's buffers; wall pressures and the limiter's slopes.
+        """Write gap and storage into the solver's buffers, and set wall pressures and the limiter's slopes.
 
-        Returns the speeds of the solver, which are 0 where the film needs no Couette flows.
+        Returns the speeds for the solver, 0 if the film needs no Couette flows.
         """
         s, place = self.solver, motion[PLACE]
         s.H[:] = 1.0 + (place @ self._gap_slope).reshape(s.H.shape)
@@ -235,12 +235,12 @@ class SphericalFilm:
         return self.flow.take(motion[SPIN], place, on_links(f.slope))
 
     def _share(self) -> np.ndarray:
-        """Share (n m,) of a full film's Couette shear."""
+        """Couette shear over that of a full film (n m,)."""
         s = self.solver
         return shear_share(s.system, s.work.active, s.closure).ravel()
 
     def _oil(self) -> OilState | None:
-        """Pressure and viscosity of the solution; None where no pressure is high enough."""
+        """Pressure and viscosity of the solution; None if it lies beyond the end of the pressure law."""
         oil = self.solver.oil_fields(self.law, None)
         if oil is None or oil.beyond:
             return None

@@ -25,14 +25,14 @@ from exudyn_ehd.status import SMALL, FilmError, Status
 
 @dataclass(eq=False)
 class SphericalEvaluation:
-    """One film evaluation; as `exudyn_ehd.coupling.contract.JointEvaluation`.
+    """One film evaluation, with the interface of `exudyn_ehd.coupling.contract.JointEvaluation`.
 
     Attributes
     ----------
     status : Status
     motion : (11,) array
     wrench : (6,) array
-        On the ball, moment about O; nan without a film.
+        Wrench on the ball, moment about O; nan without a film.
     minimum_gap : float
         Minimum gap of the rigid surfaces, exact, m.
     film : BallFilm or None
@@ -47,9 +47,9 @@ class SphericalEvaluation:
     serial: int = field(repr=False)
 
     def tangent(self) -> np.ndarray:
-        """d wrench / d motion (6, 11), exact for the current active set; until the model's next evaluation.
+        """d wrench / d motion (6, 11), exact for the current active set.
 
-        Of a ball at rest the mean of `sides`.
+        It must be called before the model's next evaluation. For a ball at rest it is the mean of `sides`.
         """
         if self.film is None:
             return np.full((6, SIZE), np.nan)
@@ -58,18 +58,18 @@ class SphericalEvaluation:
         return self.model.tangent(self.motion, self.film)
 
     def steady_tangent(self) -> np.ndarray:
-        """Return the tangent: nothing follows the motion of rigid surfaces."""
+        """Return `tangent`: rigid surfaces have no deflection that could follow the motion."""
         return self.tangent()
 
     def sides(self) -> np.ndarray | None:
-        """One-sided derivatives (2, 6, 11) of the film of a ball at rest; None of one that has derivatives."""
+        """One-sided derivatives (2, 6, 11) of the film of a ball at rest; None if the film has two-sided ones."""
         self._require_current()
         if not self.model.is_at_rest(self.motion):
             return None
         spin = float(np.linalg.norm(self.motion[SPIN])) or 1.0
         length = BESIDE * self.model.bearing.radial_clearance
         steps = np.repeat([length, 0.0, spin * length, 0.0, BESIDE * spin], [3, 1, 3, 1, 3])
-        # a model of its own keeps this film in the buffers
+        # with another model, so that the buffers of this one are not overwritten
         beside, f = SphericalModel(self.model.bearing), self.film
         assert f is not None
         return quotients(lambda at: beside.evaluate(at, f.history, f.step).wrench, self.motion, steps)
@@ -92,7 +92,7 @@ class SphericalEvaluation:
         }
 
     def history(self) -> History | None:
-        """Return the film's memory after this state; None of a film that remembers nothing."""
+        """Return the film's history after this state; None for a film without memory."""
         if not self.model.remembers:
             return None
         self._require_current()
@@ -116,11 +116,11 @@ class SphericalModel(SphericalFilm):
     motion_size = SIZE
 
     def forget(self) -> None:
-        """Drop the warm start. It never changes a result, only the time it takes."""
+        """Drop the warm start. It never changes a result, only the computing time."""
         self.solver.forget()
 
     def initial_history(self, motion: np.ndarray) -> History | None:
-        """History of a flooded socket at this motion; None of a film that remembers nothing."""
+        """History of a flooded socket at this motion; None for a film without memory."""
         if not self.remembers:
             return None
         self.serial += 1
@@ -139,7 +139,7 @@ class SphericalModel(SphericalFilm):
         return replace(temperatures, void=void, mass=mass, outflow=s.outflow())
 
     def is_at_rest(self, motion: np.ndarray) -> bool:
-        """Return whether the last film, at this motion, has no source and may rupture at any."""
+        """Return whether a film at this motion has no source, and would rupture under any small source."""
         source = CENTRE * self.bearing.radial_clearance * float(np.linalg.norm(motion[SPIN]))
         entrained = motion[VELOCITY] + 0.5 * skew(motion[PLACE]) @ motion[SPIN]
         return self._cavity == 0.0 and float(np.linalg.norm(entrained)) <= source
@@ -164,10 +164,10 @@ class SphericalModel(SphericalFilm):
         return SphericalEvaluation(status, motion, wrench, gap, film, self, self.serial)
 
     def tangent(self, motion: np.ndarray, film: BallFilm) -> np.ndarray:
-        """d wrench / d motion (6, 11) for the film that the solver holds."""
+        """d wrench / d motion (6, 11) for the film in the solver's buffers."""
         s, w, f = self.solver, self.solver.work, self._closed
         cross, R2, force, speeds = skew(motion[PLACE]), self.bearing.ball_radius**2, self.force_scale, SPEEDS @ motion
-        # derivatives of normal and pulled (3 rows each), of Couette's loads by the viscosity (6), by adjoint solves
+        # adjoint solves for normal and pulled (3 rows each), and for Couette's loads by viscosity and fill (6 rows)
         rows = self._vector if not self._limits else np.concatenate([self._vector, self._vector * f.slope.ravel()])
         n, P, share = len(rows), film.pressure / self.pressure_scale, self._share()
         rows = rows * w.active.ravel()
@@ -201,7 +201,7 @@ class SphericalModel(SphericalFilm):
         return np.asarray(out)
 
     def _shear_rows(self, sheared: np.ndarray, film: BallFilm, share: np.ndarray) -> np.ndarray:
-        """Weights (k, n m) of the unknowns in sums of the Couette shear over H with the weights ``sheared``."""
+        """Weights (k, n m) of the unknowns in sums of viscosity ratio / H with the weights ``sheared``."""
         s, active = self.solver, self.solver.work.active
         if not self.remembers_mass:
             return np.asarray(sheared * (film.ratio_q * share / s.H.ravel()) * active.ravel())
@@ -213,7 +213,7 @@ class SphericalModel(SphericalFilm):
         return out.reshape(len(out), -1)
 
     def _by_flow(self, flow: SphereFlow, lam: np.ndarray) -> np.ndarray:
-        """Gradients (k, 11) of functionals with adjoints ``lam`` (k, count) through flows, links' gaps held."""
+        """Gradients (k, 11), through the Couette flows at constant gaps, of functionals with adjoints (k, count)."""
         s, fields = self.solver, np.zeros((len(lam), self.grid.weight.size))
         fields[:, s.work.order[: s.work.count]] = -lam
         by_spin, by_place, by_slope = flow.gradients(fields, s.taken_along(), (s.HF, on_links(s.H)[1]))
@@ -222,14 +222,14 @@ class SphericalModel(SphericalFilm):
 
 
 def steady_history(model: SphericalModel, motion: np.ndarray, where: str = "audit") -> History | None:
-    """Memory of a ball that moves on with a motion (11,): a temperature in balance, and the oil content at rest.
+    """History for a film at a motion (11,): temperature in balance with the film, oil content of the film at rest.
 
-    None of a film that remembers nothing, and of an isothermal steady one.
+    None for an isothermal film that does not conserve mass or has no velocity.
 
     Raises
     ------
     FilmError
-        In the name of ``where``, if the heat has no way out, or no oil bears the temperature.
+        In the name of ``where``, if there is no sink for the heat, or if the temperature exceeds that of any oil.
     """
     thermal, at_rest = model.thermal, motion.copy()
     at_rest[VELOCITY] = 0.0

@@ -1,10 +1,10 @@
-"""A prescribed position of the ball, without a multibody model, and the audit of a ball joint.
+"""Film of a ball at a prescribed position, without a multibody model, and the audit of a ball joint.
 
-The audit says which effects mattered in the films of a ball, and which of them a spherical film leaves out. Rows,
-limits and verdicts are those of `exudyn_ehd.joint.audit`. What a `SphericalBearing` can have (a pressure law, a wall,
-another closure, a finer grid) is switched, and the ball moved to where the other film carries the same load at the same
-velocities. Elasticity, heat, shear thinning, roughness, turbulence and the oil of cavities, which it can't have, are
-judged by their numbers alone: such a row has no remedy but what its advice says.
+The audit says which effects mattered in the films of a ball, and which important ones a spherical film omits. Rows,
+limits and verdicts are those of `exudyn_ehd.joint.audit`. Options that a `SphericalBearing` has, such as a pressure
+law, a wall, another closure or a finer grid, are switched; a search finds the position at which the other film carries
+the same load at the same velocities. Effects that it cannot have (elasticity, roughness, shear thinning, turbulence)
+are judged by their indicator alone; such a row has advice, but no remedy.
 """
 
 from __future__ import annotations
@@ -50,9 +50,11 @@ if TYPE_CHECKING:
     from matplotlib.projections.polar import PolarAxes
 
 
-# Asperities carry from so many roughnesses on; a typical wall begins there, at most at this share of the clearance.
+# Gap over the composite roughness below which asperities carry, where a typical wall begins; upper bound of this onset,
+# over the clearance.
 TOUCHING, THIN = 4.0, 0.1
-# Intervals across a ball's pressure peak from which on its load is within 1 %; four times as many are plainly enough.
+# Intervals across a ball's pressure peak with which the error of its load is below 1 %. With four times as many, films
+# are not compared with those of a finer grid.
 ACROSS = {
     "grid around": Limit(4.0, "intervals", below=True, nothing=16.0),
     "grid along": Limit(3.0, "intervals", below=True, nothing=12.0),
@@ -60,7 +62,7 @@ ACROSS = {
 
 
 def audit_ball(bearing: SphericalBearing, motions: np.ndarray, record: RecordedSteps | None = None) -> Audit:
-    """Audit a ball by its films at motions (n, 11), or at the worst ones of a joint's record.
+    """Audit a ball by its films at motions (n, 11), or at the worst motions of a joint's record.
 
     Raises
     ------
@@ -68,7 +70,7 @@ def audit_ball(bearing: SphericalBearing, motions: np.ndarray, record: RecordedS
         If there is no film at any of them.
     """
     if record is not None:
-        # a record has place, velocity and angular velocity one behind the other
+        # a record has place, velocity and angular velocity without the zeros between them
         motions = np.insert(record.motion[:, :9], [3, 6], 0.0, axis=1)
         record = replace(record, motion=motions, leakage=moved_oil(bearing, motions))
         spin = np.linalg.norm(motions[:, SPIN], axis=1)
@@ -76,20 +78,20 @@ def audit_ball(bearing: SphericalBearing, motions: np.ndarray, record: RecordedS
     model = SphericalModel(bearing)
     states = []
     for motion in motions:
-        # the case tells if none has a film
+        # `Case` raises an error if no motion has a film
         with contextlib.suppress(FilmError):
             states.append(FilmState(motion, steady_history(model, motion)))
     return audit_of(BallCase(model, states, record), BALL_ROWS)  # type: ignore[arg-type]
 
 
 def ball_sources(motions: np.ndarray) -> Sources:
-    """Sources of Reynolds' equation by motions (n, 11) of a ball."""
+    """Sources of Reynolds' equation of motions (n, 11) of a ball."""
     place, velocity, spin = (motions[None, :, part] for part in (PLACE, VELOCITY, SPIN))
     return place, velocity, 0.5 * np.linalg.norm(np.cross(place, spin), axis=2)
 
 
 def moved_oil(b: SphericalBearing, motions: np.ndarray) -> np.ndarray:
-    """Flow (n,) that the surfaces of a ball drag along and press aside at motions (n, 11), m3/s."""
+    """Flow (n,) of the oil that the surfaces of a ball drag along and squeeze out at motions (n, 11), m3/s."""
     first, last = b.socket_angles
     slide, velocity = (np.linalg.norm(motions[:, part], axis=1) for part in (SPIN, VELOCITY))
     dragged = 0.5 * b.ball_radius * slide * b.radial_clearance * b.ball_radius * (last - first)
@@ -101,7 +103,7 @@ class BallCase(Case):
 
     model: SphericalModel  # type: ignore[assignment]
     bearing: SphericalBearing  # type: ignore[assignment]
-    # of some directions the force of a ball knows little
+    # a smaller tolerance than for journals: the force depends only weakly on the position in some directions
     axes, entries, tolerance = 3, SIZE, 3e-4
     replays = False
     surface, steel = "socket", "steel under the peak"
@@ -120,7 +122,7 @@ class BallCase(Case):
     def steady(  # type: ignore[override]
         self, other: SphericalModel, mine: FilmState
     ) -> Callable[[np.ndarray], SphericalEvaluation]:
-        """Return the function of a motion that evaluates another ball's film at its own memory."""
+        """Return the function of a motion that evaluates another ball's film with its `steady_history`."""
         return lambda motion: other.evaluate(motion, steady_history(other, motion))
 
     def sources(self, motions: np.ndarray) -> Sources:
@@ -138,14 +140,15 @@ class BallCase(Case):
     def own_numbers(  # type: ignore[override]
         self, found: SphericalEvaluation
     ) -> tuple[dict[str, float], Resolution]:
-        """Numbers of a film that rows of balls read, and the resolution of its pressure peak by the grid."""
+        """Numbers of a film for the audit's rows, and the resolution of its pressure peak by the grid."""
         film, b, motion, area = found.film, self.bearing, found.motion, self.model.patch.area
         assert film is not None
         R, p, share = b.ball_radius, film.pressure, area / area.sum()
         i, j = divmod(int(p.argmax()), p.shape[1])
         half = p.shape[0] // 2
         around, along = intervals_at_half(np.roll(p[:, j], half - i), half), intervals_at_half(p[i], j)
-        # half-spaces of steel under the peak on the circle of the area at half of it, ball and socket
+        # deflection of ball and socket as steel half-spaces, under the peak pressure on a circle with the area of the
+        # vertices above half of it
         radius = R * math.sqrt(float(area[p >= 0.5 * p.max()].sum()) / math.pi)
         numbers = {
             "speed": R * float(np.linalg.norm(motion[SPIN])) + float(np.linalg.norm(motion[VELOCITY])),
@@ -192,7 +195,7 @@ def _grid(case: Case, effect: str, name: str, seen: str) -> Finding:
     )
 
 
-# Rows of journals that say nothing about a ball, and those of its own.
+# Rows that apply to journals only, and rows of a ball's audit.
 _JOURNALS = ("misalignment", "journal elasticity", "Taylor vortices")
 BALL_ROWS: dict[str, AuditRow] = {name: row for name, row in ROWS.items() if name not in _JOURNALS} | {
     "contact": _contact,
@@ -216,14 +219,14 @@ class SphericalResult:
     fill : (n, m) array
         Oil over gap with `ElrodAdams`; 1 with other closures, which do not count it.
     force, torque : (3,) arrays
-        On the ball; torque about its centre, N and N m. The socket gets minus the force in the ball's centre and minus
-        the torque.
+        Force on the ball, N, and torque on it about its centre, N m. On the socket act minus the force, in the ball's
+        centre, and minus the torque.
     tangent : (6, 9) array
         Derivative of the force and of the moment about the socket's centre to place, velocity and angular velocity,
         each x, y, z; SI units. At rest a film that ruptures where the ball moves away has one-sided derivatives:
         entries are nan where both sides differ by more than 5 % of the largest entry of their kind.
     temperature : float or None
-        Temperature of the film, K; None of an isothermal one.
+        Temperature of the film, K; None for an isothermal film.
     minimum_gap, peak_pressure : float
         Minimum film thickness, m; peak pressure, Pa.
     power_loss, contact_load : float
@@ -275,7 +278,7 @@ class SphericalResult:
 
 
 def _derivatives(found: SphericalEvaluation) -> np.ndarray:
-    """Tangent (6, 9); nan where both sides of a film at rest differ."""
+    """Tangent (6, 9); nan where the one-sided derivatives of a film at rest differ."""
     tangent, sides = np.delete(found.tangent(), (3, 7), axis=1), found.sides()
     if sides is not None:
         blocks = np.delete(sides, (3, 7), axis=2).reshape(2, 2, 3, 3, 3)
@@ -291,22 +294,22 @@ def steady_spherical(
     velocity: Sequence[float] | np.ndarray = (0.0, 0.0, 0.0),
     angular_velocity: Sequence[float] | np.ndarray = (0.0, 0.0, 0.0),
 ) -> SphericalResult:
-    """Film of a ball at a prescribed place and motion in its socket: pressure, force, torque.
+    """Compute the film of a ball at a prescribed place and motion in its socket: pressure, force, torque.
 
     Parameters
     ----------
     bearing : SphericalBearing
     place : (3,) [m]
-        The ball's centre in the socket's frame: origin in the socket's centre, z = axis of the socket. Its length must
-        leave a gap, so stay below the radial clearance.
+        The ball's centre in the socket's frame: origin in the socket's centre, z = axis of the socket. The gap must
+        stay open, so its length must be below the radial clearance.
     velocity : (3,) [m/s], default (0.0, 0.0, 0.0)
         Velocity of the ball's centre as seen from the socket.
     angular_velocity : (3,) [rad/s], default (0.0, 0.0, 0.0)
         Angular velocity of the ball as seen from the socket.
 
-    The film is a steady one. With `ElrodAdams` and a velocity it is that of the instant at which a ball begins to move
-    so, with the oil content of the steady film at rest; its ``tangent`` holds the fill. With ``thermal`` it has the
-    temperature at which heat and cooling are in balance.
+    The film is a steady one. With `ElrodAdams` and a velocity it is the film at the instant at which a ball at rest
+    begins to move: its oil content is that of the steady film at rest, and is constant in ``tangent``. With
+    ``thermal`` the film has the temperature at which heat and cooling are in balance.
 
     Returns
     -------
@@ -317,7 +320,7 @@ def steady_spherical(
     InputError
         For values that are not numbers.
     FilmError
-        If there is no film at this place, or the ball is through its contact by more than the clearance.
+        If there is no film at this place, or if the ball penetrates its contact by more than the clearance.
 
     Examples
     --------

@@ -1,24 +1,24 @@
 """Response of a film to small motions of the journal about a steady state, at any frequency.
 
-What remembers follows the journal with a delay, so that stiffness and damping depend on the frequency nu. With the
-steady balance ``r(u, x) = 0`` of the unknowns u (pressures of full vertices, fills of cavitated ones) for the position
-x, and the volume ``C(u, x)`` that the vertices store, a small motion ``x exp(i nu t)`` gives
+A film with a memory follows the journal with a delay, so that stiffness and damping depend on the frequency nu. The
+unknowns u are pressures of full vertices and fills of cavitated ones. With their steady balance ``r(u, x) = 0`` at the
+position x, and the volume ``C(u, x)`` stored at the vertices, a small motion ``x exp(i nu t)`` gives
 
     (A + i nu S) u + (B + i nu T) x = 0,    A = dr/du, S = area dC/du, B = dr/dx, T = area dC/dx,
 
-at fixed sets of full and cavitated vertices. Vertices store the oil of a mass-conserving film and the deflection of a
-liner, supply areas with a restrictor their compressible oil. The force's amplitude is ``-Z x`` with the dynamic
-stiffness ``Z = K + i nu C``, from one adjoint solve of ``(A + i nu S)^T`` per component of the force. For nu = 0 it is
-the stiffness of the steady film; for nu without bounds C tends to that of a sudden velocity.
+for fixed sets of full and cavitated vertices. Stored volumes are: the oil of a mass-conserving film, the deflection of
+a liner, and the compressible oil of supply areas with a restrictor. The amplitude of the force is ``-Z x`` with the
+dynamic stiffness ``Z = K + i nu C``, from one adjoint solve of ``(A + i nu S)^T`` per component of the force. For nu =
+0 it is the stiffness of the steady film. For nu to infinity, C tends to the damping of a sudden velocity.
 
-A bore or journal with the stiffness K_q deflects by q, which follows with a delay, since the film between has to be
-squeezed. With Z of the journal's and the bore's coordinates together,
+A flexible bore or journal with the stiffness K_q deflects by q. The deflection follows with a delay, because the film
+between the surfaces has to be squeezed. With Z of the journal's and the bore's coordinates together,
 
     Z(nu) = Z_xx - Z_xq (K_q + Z_qq)^-1 Z_qx.
 
-Of a film without a memory of its oil, that Z is ``K + i nu C`` of its tangent.
+For a film without a memory of its oil, the Z of these coordinates is ``K + i nu C`` of its tangent.
 
-The threshold of whirl: a rotor of mass M on the bearing neither grows nor decays where ``Z(i nu)`` has the real
+Threshold of whirl: the vibration of a rotor of mass M on the bearing neither grows nor decays if ``Z(nu)`` has the real
 eigenvalue ``M nu^2``.
 """
 
@@ -44,19 +44,22 @@ from exudyn_ehd.joint.tangent.bore import Balances, dense, load_columns
 from exudyn_ehd.joint.tangent.wrench import balance_gradients, true_fills, wrench_rows
 from exudyn_ehd.status import FilmError
 
-# Whirl ratios between which a threshold is looked for: a journal bearing's is near one half.
+# Range of whirl ratios in which a threshold is searched, and number of samples in it; for journal bearings the whirl
+# ratio is near one half. More samples: fewer missed thresholds, slower.
 SLOWEST, FASTEST, STEPS = 0.05, 2.0, 24
-# Whirl ratios at which a bore of many coordinates is asked how it follows, and frequencies over the rates at which
-# pressures of supply areas settle. The space of the answers tells the critical
-# mass of soft bushes to 2e-9, and Z from 0 to 4 times the spin to 5e-7.
+# Whirl ratios at which the response of a bore with many coordinates is computed, to reduce them to the space of these
+# responses; also frequencies over the rates at which the pressures of supply areas settle. Fewer: larger error. Error
+# of the critical mass of soft bushes 2e-9, of Z from 0 to 4 times the spin 5e-7.
 SAMPLES = (0.0, 0.2, 0.5, 1.0, 2.0)
-# Frequencies, over the speed, of motions that decay by 0, 25 and 50 degrees, from which the films' answers are made.
-# Z is told to 1e-9 where motions swing up to 15 times a turn, and where they decay far faster.
+# Complex frequencies over the speed, with arguments of 0, 25 and 50 degrees (decaying motions), at which the responses
+# for `FilmResponse.linear` are computed. Error of Z: 1e-9 for motions of up to 15 oscillations per turn, and for
+# motions that decay far faster.
 RAYS = np.outer((0.1, 0.4, 1.0, 2.5, 6.0, 15.0, 60.0, 300.0), np.exp(1j * np.radians((0.0, 25.0, 50.0)))).ravel()
-# Places and slopes x, y, bx, by of a journal, and the rows of a wrench that do work on them: F_x, F_y, M_y, -M_x.
+# Number of the coordinates x, y, bx, by of a journal; rows and signs of the wrench's components that do work on them:
+# F_x, F_y, M_y, -M_x.
 PLACES, LOADS, SIGNS = 4, [0, 1, 4, 3], np.array([1.0, 1.0, 1.0, -1.0])
 
-# Share of the largest stiffness that the k of a threshold may miss.
+# Round-off of the k in `whirl_threshold`, over the largest stiffness.
 ROUNDING = 1e-12
 
 
@@ -77,7 +80,7 @@ class FilmResponse:
     Parameters
     ----------
     evaluation : Evaluation
-        Steady film, in balance with its bore; what is needed of it is copied.
+        Steady film, in balance with its bore. Its data are copied, so that the model may evaluate other states.
 
     Attributes
     ----------
@@ -86,9 +89,9 @@ class FilmResponse:
     speed : float
         Spin, rad/s, > 0.
     stiffness : (k, k) array
-        Of a flexible bore or journal in its coordinates.
+        Stiffness of a flexible bore or journal in its coordinates.
     remembers : bool
-        Whether the film itself follows with a delay.
+        True: the film has a memory, so that its forces depend on the frequency.
     """
 
     def __init__(self, evaluation: Evaluation) -> None:
@@ -106,7 +109,7 @@ class FilmResponse:
         k = len(self.stiffness)
         rows = -np.append(SIGNS, np.ones(k))[:, None] * T[[*LOADS, *range(6, 6 + k)]]
         pose, rate = self._gradients(0.0)
-        # what stiffness and damping of slow motions hold besides the film's pressure
+        # stiffness and damping of slow motions without the part by the film's unknowns
         self.rest = (
             np.hstack((rows[:, :PLACES], rows[:, m : m + k])) - pose,
             np.hstack((rows[:, PLACES : 2 * PLACES], rows[:, m + k :])) - rate,
@@ -117,7 +120,7 @@ class FilmResponse:
             self._reduce([self._followed(self._whole(nu)) for nu in self._frequencies(SAMPLES)])
 
     def _take(self, film: SolvedFilm, bore: Bore | None) -> None:
-        """Copy the balances of a film, what it stores, and the derivatives of both to the motions."""
+        """Copy the balances of a film, its stored volumes, and the derivatives of both to the motions."""
         s, w = film.solver, film.solver.work
         order, number = w.order[: w.count].copy(), np.full(w.order.size, -1)
         number[order] = np.arange(order.size)
@@ -132,7 +135,7 @@ class FilmResponse:
             if s.oil_line is not None:
                 stored += whole * s.oil_line.rise
             stored = np.where(w.active, stored, whole)
-        areas = s.unknowns - w.count  # whose pressure is unknown
+        areas = s.unknowns - w.count  # number of supply areas with an unknown pressure
         self.store = diags_array(np.append(stored.reshape(-1)[order], np.zeros(areas)) + s.surroundings())
         if s.reservoirs is not None:
             filled = s.reservoirs.storage()
@@ -145,15 +148,18 @@ class FilmResponse:
         if fills is not None:  # of a film that conserves mass
             contents = fills.weighed(whole, number)
             by_fill = contents.columns(film.grid.gap_shapes, w.count + areas) * scale
-        # the content at a mass-conserving film's line follows position and velocity: the balances feel its rate
+        # at the rupture line of a mass-conserving film the content depends on position and velocity, so that its rate
+        # enters the balances
         self.by_pose, self.by_rate = by_motion[:PLACES].copy(), by_motion[PLACES : 2 * PLACES]
         self.by_content, self.by_sway = by_fill[:PLACES], by_fill[PLACES : 2 * PLACES]
         if bore is not None:
             self._add_bore(film, bore, contents)
 
     def _let_follow(self, film: SolvedFilm, liner: LinerFilm) -> None:
-        """Let a liner on which surfaces touch follow the rates, in the balances: neither the tangent knows of that, nor
-        the rupture line."""
+        """Add the deflection rates of a liner on which surfaces touch to the balances.
+
+        Neither the tangent nor the rupture line contains them.
+        """
         s, w, by_gap = film.solver, film.solver.work, self.by_rate
         if (line := s.line_gradients()) is not None:
             scale = -film.scales.force * film.parts.motion_scale[PLACES : 2 * PLACES, None]
@@ -175,10 +181,10 @@ class FilmResponse:
         self.by_content, self.by_sway = np.concatenate((self.by_content, content)), np.concatenate((self.by_sway, sway))
 
     def linear(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """K, C and M (p, p) of ``K z + C z_t + M z_tt = load`` for z of the journal's motions and what follows them.
+        """K, C and M (p, p) of ``K z + C z_t + M z_tt = load`` for z = (journal's motions, q, reduced film unknowns).
 
-        These are the bore's coordinates and the film's unknowns. The latter, and their balances, are taken in the
-        spaces of the answers to motions and to loads at some frequencies, where Z and its slope are exact.
+        The film's unknowns and balances are projected on the spaces of the responses to motions and to loads at some
+        frequencies. At these frequencies Z and its derivative are exact.
         """
         K, C = self.rest[0] + np.pad(self.stiffness, (PLACES, 0)), self.rest[1]
         if not self.remembers:
@@ -200,7 +206,7 @@ class FilmResponse:
         )
 
     def _frequencies(self, shares: Sequence[complex]) -> np.ndarray:
-        """Frequencies by their shares of the speed, rad/s, and such beside the rates of supply areas."""
+        """Frequencies, rad/s: ``shares`` of the speed, and `SAMPLES` of the rates of supply areas."""
         beside = np.outer(SAMPLES[1:], (self.rates.min(), self.rates.max())).ravel() if self.rates.size else ()
         return np.array((*(self.speed * np.array(shares)), *beside))
 
@@ -210,7 +216,10 @@ class FilmResponse:
         self.rest[1][:2, :2] += damping
 
     def at(self, frequency: complex) -> np.ndarray:
-        """Z (4, 4) of `slow_motions` at a frequency, rad/s; a complex one stands for motions that grow or decay."""
+        """Z (4, 4) in the coordinates of `slow_motions`, at a frequency, rad/s.
+
+        A complex frequency stands for motions that grow or decay.
+        """
         Z = self._whole(frequency)
         return Z[:PLACES, :PLACES] + Z[:PLACES, PLACES:] @ self._followed(Z)
 
@@ -230,11 +239,11 @@ class FilmResponse:
         return (pose @ lam).T, (rate @ lam).T
 
     def _followed(self, Z: np.ndarray) -> np.ndarray:
-        """q (k, 4) of unit motions of the journal."""
+        """Amplitudes q (k, 4) by unit motions of the journal."""
         return -np.linalg.solve(self.stiffness + Z[PLACES:, PLACES:], Z[PLACES:, :PLACES])
 
     def _reduce(self, found: list[np.ndarray]) -> None:
-        """Leave q in the space of what it was found to be at some frequencies."""
+        """Reduce q to the space of its responses ``found`` at some frequencies."""
         columns = [part for q in found for part in (q.real, q.imag)]
         V = block_diag(np.eye(PLACES), np.linalg.qr(np.concatenate(columns, axis=1))[0])
         self.rows, self.by_pose, self.by_rate = self.rows @ V, V.T @ self.by_pose, V.T @ self.by_rate
@@ -244,21 +253,21 @@ class FilmResponse:
 
 
 def _real_space(found: list[np.ndarray]) -> np.ndarray:
-    """Orthonormal columns (n, p) of the space of complex ones (n, m) and their conjugates; static ones are real."""
+    """Orthonormal basis (n, p) of the real and imaginary parts of complex columns (n, m)."""
     columns = np.concatenate([part for some in found for part in (some.real, some.imag) if part.any()], axis=1)
     return np.linalg.qr(columns)[0]
 
 
 class FilmMemory(NamedTuple):
-    """A film whose stiffness and damping depend on the frequency, in n directions y.
+    """A film whose stiffness and damping depend on the frequency, in n coordinates y of a system.
 
     Attributes
     ----------
     response : FilmResponse
     slow : two (4, 4) arrays
-        K and C of slow motions, which the matrices of the directions contain.
+        K and C of slow motions, which the system's matrices already contain.
     loads, places : (n, 4), (4, n) arrays
-        Forces on y of the loads of `slow_motions`, and their places by y.
+        Forces on y per load of `slow_motions`, and coordinates of `slow_motions` per y.
     """
 
     response: FilmResponse
@@ -267,18 +276,19 @@ class FilmMemory(NamedTuple):
     places: np.ndarray
 
     def beyond(self, s: complex) -> np.ndarray:
-        """Dynamic stiffness (n, n) of motions exp(s t) beyond K + s C of slow ones."""
+        """Dynamic stiffness (n, n) of motions exp(s t), minus K + s C of slow motions."""
         stiffness, damping = self.slow
         return self.loads @ (self.response.at(-1j * s) - stiffness - s * damping) @ self.places
 
 
 def response_of(evaluation: Evaluation) -> tuple[tuple[np.ndarray, np.ndarray], FilmResponse | None]:
-    """K and C (4, 4) of slow motions, and the response at other frequencies; None where K and C depend on none.
+    """K and C (4, 4) of slow motions, and the response at other frequencies; None if K and C are independent of it.
 
     Parameters
     ----------
     evaluation : Evaluation
-        A steady film, the model's last; at the exact centre a film beside it takes its place.
+        A steady film, the model's last. At the exact centre it is replaced by a film slightly off the centre, if the
+        film has a memory and does not conserve mass.
     """
     model = evaluation.model
     has_memory = model.remembers_mass or model.flexible or model.parts.liner is not None
@@ -290,7 +300,7 @@ def response_of(evaluation: Evaluation) -> tuple[tuple[np.ndarray, np.ndarray], 
 
 
 def require_derivatives(evaluation: Evaluation, where: str) -> None:
-    """Raise `FilmError` in the name of ``where`` if K and C beside the centre depend on the direction."""
+    """Raise `FilmError` in the name of ``where`` if K and C slightly off the centre depend on the direction."""
     tangents = evaluation.tangents_beside(exact=True)
     for block in (tangents[:, :2, :2], tangents[:, :2, 4:6]):
         mean = block.mean(axis=0)
@@ -323,7 +333,7 @@ def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) ->
     Returns
     -------
     whirl_ratio, critical_mass : float
-        (nan, inf) if stable at any mass; (nan, 0) if unstable at any, as k is not positive or C singular.
+        (nan, inf) if stable at any mass; (nan, 0) if unstable at any mass, because k is not positive or C is singular.
     """
     (kxx, kxy), (kyx, kyy) = stiffness
     (cxx, cxy), (cyx, cyy) = damping
@@ -332,13 +342,13 @@ def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) ->
         return math.nan, 0.0
     k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / trace
     above, below = (k - kxx) * (k - kyy) - kxy * kyx, cxx * cyy - cxy * cyx
-    # an unbroken film about the centre has k = 0, to rounding of either sign
+    # an unbroken film about the centre has k = 0, with round-off of either sign
     rounding = ROUNDING * max(map(abs, (kxx, kxy, kyx, kyy)))
     if k < -rounding or (k <= rounding and above <= 0.0):
         return math.nan, 0.0
     k = max(k, 0.0)
     if below == 0.0 < above:
-        # it whirls ever faster, at ever smaller a mass
+        # whirl of unbounded frequency at a mass that tends to 0
         return math.nan, 0.0
     if below == 0.0 or above / below <= 0.0:
         return math.nan, math.inf
@@ -347,10 +357,11 @@ def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) ->
 
 
 def threshold(stiffness: Callable[[float], np.ndarray], omega: float, rates: np.ndarray) -> tuple[float, float]:
-    """Whirl ratio and critical mass of a rigid rotor on a bearing of the dynamic stiffness Z(nu), x and y its first.
+    """Whirl ratio and critical mass of a rigid rotor on a bearing of the dynamic stiffness Z(nu).
 
-    As `whirl_threshold`; thresholds are looked for between 0.05 and twice the spin omega > 0, with `FilmResponse.rates`
-    also around those, and the one of the smallest mass counts.
+    The first two coordinates of Z are x and y. Results as for `whirl_threshold`. Thresholds are searched for between
+    0.05 and 2 times the spin omega > 0, with `FilmResponse.rates` also around these rates; the one with the smallest
+    mass is returned.
     """
 
     def values(frequency: float) -> np.ndarray:

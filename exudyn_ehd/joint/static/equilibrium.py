@@ -1,6 +1,6 @@
 """The position in which a film carries a steady load, with stiffness, damping and whirl threshold.
 
-Where several positions carry one load, the steadiest one is found: the one that a journal keeps.
+If several positions carry one load, the most stable of those found is returned.
 """
 
 from __future__ import annotations
@@ -54,18 +54,20 @@ if TYPE_CHECKING:
     from exudyn_ehd.joint.static.thrust_pads import ThrustPadsResult
 
 
-# Step of the difference quotients between converged films, as a share of the minimum film thickness.
+# Step of the difference quotients of `settled_stiffness`, as a share of the minimum film thickness. Larger: larger
+# error of second order; smaller: more round-off.
 SETTLED_STEP = 1e-4
-# Relative errors of the critical mass from here on are told when a result is printed.
+# Relative error of the critical mass above which a printed result contains it.
 SURE = 0.05
-# Error of the critical mass per squared cancellation on 96 columns: line on the grid, with Gümbel, inside its cells.
+# Relative error of the critical mass over the squared cancellation, on 96 columns: rupture line on the grid, the same
+# with Gümbel, rupture line inside the cells.
 ON_GRID, CLIPPED, IN_CELLS = 0.013, 0.016, 0.0013
-# What is left inside the cells where nothing cancels.
+# Relative error of the critical mass on 96 columns without cancellation, rupture line inside the cells.
 LEFT_IN_CELLS = 0.007
 LOADS = {"smallest": 1e-30, "largest": 1e15}
-# Without a load, what counts as one for the residual: share of L D mu omega / psi^2, and share of L D times the supply
-# pressure of restrictors. Smaller ones ask for a more exact position, which round-off ends at 1e-16 of the first force,
-# and the balances of restrictors at 1e-13 of the second.
+# Force that replaces a load of 0 in the relative residual: share of L D mu omega / psi^2, plus share of L D times the
+# supply pressure of restrictors. Smaller: a more accurate position. Round-off limits this at 1e-16 of the first force,
+# the balances of restrictors at 1e-13 of the second one.
 NO_LOAD, NO_LOAD_FED = 1e-5, 1e-3
 
 
@@ -82,12 +84,13 @@ class EquilibriumResult:
         eccentricity in the sense of rotation, rad.
     stiffness, damping : (2, 2) arrays
         K = -dF/d(x, y) in N/m and C = -dF/d(dx/dt, dy/dt) in N s/m with F on the journal, joint frame, at
-        ``frequency``. With ``thermal`` the temperature is held, as for motions quicker than the film's oil is
-        exchanged; ``settled_stiffness`` is the other limit. Flexible bore, journal and liner follow without inertia.
+        ``frequency``. With ``thermal`` the temperature is constant, which holds for motions that are fast compared with
+        the exchange of the film's oil; ``settled_stiffness`` is the other limit. Flexible bore, journal and liner have
+        no inertia.
     frequency : float
         Frequency of the small motions for which K and C hold, rad/s. 0: they do not depend on it, or hold for slow
-        motions (surfaces that deflect, a ``compressible_volume``). With `ElrodAdams` that of the whirl threshold, or
-        half the spin if there is none.
+        motions (surfaces that deflect, a ``compressible_volume``). With `ElrodAdams` it is that of the whirl threshold,
+        or half the spin if there is no threshold.
     whirl_ratio : float
         Whirl frequency at the threshold divided by |omega|; nan where there is no threshold: stable at any mass, or
         unstable at any.
@@ -95,15 +98,15 @@ class EquilibriumResult:
         A rigid symmetric rotor is stable at this speed while its mass per bearing, kg, is smaller than this; inf if
         stable at any mass, 0 if unstable at any.
     critical_mass_error : float
-        Estimate of the relative error of ``critical_mass`` due to the rupture line's place on the grid; inf where the
-        grid does not tell whether the bearing is stable at any mass. Of all results the critical mass depends most on
-        the grid. Its error on the default film is 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76; with the
-        rupture line on the grid's vertices it is some 20 % at 0.7 and several times the value at 0.76.
+        Estimate of the relative error of ``critical_mass`` due to the position of the rupture line on the grid; inf if
+        the grid is too coarse to decide whether the bearing is stable at any mass. Of all results the critical mass
+        depends most on the grid. Its error on the default film is 3 % at an eccentricity ratio of 0.7 and 17 % at 0.76;
+        with the rupture line on the grid's vertices it is some 20 % at 0.7 and several times the value at 0.76.
     residual : float
         Largest component of film force + load in x and y, divided by the size of the load; without a load by 1e-5 of
         ``L D mu omega / psi^2``.
     iterations : int
-        Positions tried, each with a film solve (and with the temperature and the deflection that belong to it).
+        Number of positions tried, each with a film solve and with the temperature and deflection there.
     film : SteadyResult
         The film in this position.
     response : FilmResponse or None
@@ -145,7 +148,7 @@ class EquilibriumResult:
 
     @cached_property
     def settled_stiffness(self) -> np.ndarray:
-        """Stiffness -dF/d(x, y) (2, 2), N/m, under a load that changes slowly: temperature and oil content follow.
+        """Stiffness -dF/d(x, y) (2, 2), N/m, for slow changes of the load, with steady temperature and oil content.
 
         Equal to ``stiffness`` for a film without ``thermal`` and without dependence on the frequency. With ``thermal``
         it comes from central differences of films that are solved at the first call.
@@ -170,9 +173,9 @@ class EquilibriumResult:
     def dynamic_stiffness(self, frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
         """Z = K + i nu C: the force's amplitude is -Z x for a motion x exp(i nu t).
 
-        x is the small motion (x, y) about the equilibrium, the force that on the journal, joint frame. K and C depend
-        on the frequency with `ElrodAdams`, as the cavity's oil follows with a delay, where surfaces deflect, and where
-        restrictors have a ``compressible_volume``. See
+        x is the small motion (x, y) about the equilibrium, and the force acts on the journal, joint frame. K and C
+        depend on the frequency in three cases: with `ElrodAdams`, because the cavity's oil follows with a delay; with
+        surfaces that deflect; with restrictors that have a ``compressible_volume``. See
         `exudyn_ehd.joint.static.dynamic_stiffness`.
 
         Parameters
@@ -221,52 +224,52 @@ def equilibrium(
     axial_position: float = 0.0,
     axial_load: float | None = None,
 ) -> EquilibriumResult | TiltingPadResult | ThrustPadsResult:
-    """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
+    """Find the position in which the film carries a steady load, with stiffness, damping and whirl threshold.
 
-    One bearing, alone, with a fixed tilt: a rotor in several bearings, or a journal that moments tilt, is for
-    `SolveEquilibrium`; friction over the speed for `stribeck`. With `TiltingPads` every pad is in balance, too; the
+    This is for one bearing with a fixed tilt. Use `SolveEquilibrium` for a rotor in several bearings or a journal that
+    is tilted by moments, `stribeck` for friction over the speed. With `TiltingPads` every pad is in balance, too; the
     journal is parallel to them, and the result is a `TiltingPadResult`.
 
     For which motions stiffness K and damping C hold:
 
     - `ElrodAdams`: both depend on the frequency, because the cavity's oil follows with a delay. Those returned hold at
       the frequency of the whirl threshold; `EquilibriumResult.dynamic_stiffness` gives others.
-    - ``inlet=MaximumGap()``: the film begins opposite to the journal wherever that moves, and K contains the turn of
-      its line, as in the closed forms of short and long bearings; C is that at a line at rest.
-    - ``thermal``: at constant temperature; in `EquilibriumResult.settled_stiffness` the temperature follows.
+    - ``inlet=MaximumGap()``: the film always begins opposite to the journal. K contains the rotation of this line with
+      the journal, as in the closed forms of short and long bearings; C holds for a line at rest.
+    - ``thermal``: at constant temperature; `EquilibriumResult.settled_stiffness` is that with steady temperature.
     - liner, flexible bore or journal: K of the steady film, C of slow motions. Quick motions deflect a surface with a
       delay, which the threshold and `EquilibriumResult.dynamic_stiffness` include. With `ElrodAdams` K and C hold at
       the threshold's frequency here too. With an `ANCFBush` they hold about its deformed state.
 
-    Films on end faces (``bearing.thrust``) carry their part of the load, in x and y too: position, stiffness and
-    damping are those of all films together, ``film.faces`` holds the faces alone. The journal is held at
-    ``axial_position``, or finds the position in which the faces carry ``axial_load``. K and C are for motions across
+    Films on end faces (``bearing.thrust``) carry a part of the load, also in x and y. Position, stiffness and damping
+    are those of all films together; ``film.faces`` has the results of the faces alone. The journal is held at
+    ``axial_position``, or the position is found in which the faces carry ``axial_load``. K and C are for motions across
     the axis; those along it are ``film.faces.axial_stiffness`` and ``axial_damping``.
 
     Several positions may carry one load where asperities touch, the film heats, oil is supplied, the journal is tilted
     or the film is starved. The search starts where a film with a cavity would carry the load and returns the position
-    it converges to. With supply areas, tilt or `ElrodAdams` it looks for others if K is not positive definite there: a
-    UserWarning names all that it found, and the most stable one is returned.
+    to which it converges. If K is not positive definite there, and there are supply areas, a tilt or `ElrodAdams`, it
+    searches for other positions. A UserWarning lists all positions found, and the most stable one is returned.
 
     `TiltingThrustPads` carry an axial load: give ``speed`` and ``load`` alone. The result has the film thickness and
-    the tilts of the pads, which have no moment about their pivots, and the axial stiffness and damping with pads that
-    follow (`exudyn_ehd.joint.static.thrust_pads`).
+    the tilts of the pads, at which there is no moment about their pivots, and the axial stiffness and damping with pads
+    that tilt freely (`exudyn_ehd.joint.static.thrust_pads`).
 
-    Method: Newton's with the exact tangent, at most 60 % of the remaining gap a step; where it fails, damped steps of
-    Levenberg and Marquardt.
+    Method: Newton's method with the exact tangent; a step closes at most 60 % of the remaining gap. If it fails, damped
+    steps of Levenberg and Marquardt.
 
     Parameters
     ----------
     bearing : JournalBearing, TiltingPads or TiltingThrustPads
-        A journal bearing with ``inlet=MaximumGap()`` is a rigid one that is the same in all directions, with an aligned
-        journal, ambient ends and a film that does not conserve mass, without ``thrust``.
+        With ``inlet=MaximumGap()`` the bearing must be rigid and the same in all directions, with an aligned journal,
+        ambient ends, a film that does not conserve mass, and without ``thrust``.
     speed : float
         Spin of the journal against the housing, rad/s, positive about +z, not 0.
     load : (float, float), or float
-        External force on the journal in x and y of the joint frame, N, which the film balances: weight down is
-        (0, -W). Under no load, (0, 0), the journal of a bearing that is the same in all directions lies at the exact
-        centre. A film that ruptures has one-sided derivatives there; stiffness and damping are those a little off the
-        centre, `exudyn_ehd.joint.model.rigid`. Of thrust pads one number: the force, above 0, that presses the collar
+        External force on the journal in x and y of the joint frame, N, which the film balances; a weight W along -y is
+        (0, -W). Without a load, (0, 0), the journal of a bearing that is the same in all directions lies at the exact
+        centre. A film that ruptures has one-sided derivatives there; stiffness and damping are those slightly off the
+        centre, `exudyn_ehd.joint.model.rigid`. For thrust pads one number: the force, above 0, that presses the collar
         onto all pads.
     tilt : (float, float), default (0.0, 0.0)
         Slopes (bx, by) of the journal axis, rad, held fixed.
@@ -283,8 +286,8 @@ def equilibrium(
     Raises
     ------
     InputError
-        For zero speed, an inlet that does not go with the bearing, supply areas that turn with the journal, an axial
-        load without faces or at a given axial position.
+        For zero speed, an inlet that the bearing does not support, supply areas that turn with the journal, an axial
+        load without faces or together with an axial position.
     FilmError
         If no equilibrium was found, or if it is the exact centre and stiffness and damping depend on the direction.
 
@@ -334,7 +337,7 @@ def equilibrium(
 
 
 def _no_load(bearing: JournalBearing, omega: float) -> float:
-    """Force, N, that counts as the load of a bearing without one."""
+    """Force, N, that replaces a load of 0 in relative residuals."""
     fed = max((getattr(area.supply, "supply_pressure", 0.0) for area in bearing.supply), default=0.0)
     area = 2.0 * bearing.journal_radius * bearing.length
     return NO_LOAD * bearing.reference_force(omega) + NO_LOAD_FED * area * fed
@@ -346,7 +349,7 @@ def _result(
     model: BearingModel,
     small: tuple[np.ndarray, np.ndarray, FilmResponse | None],
 ) -> EquilibriumResult:
-    """The result at a place that was found, with its `_small_motions`."""
+    """Result at a position that was found; ``small``: its `_small_motions`."""
     (K, C, response), bearing, omega = small, model.bearing, abs(float(found.motion[8]))
     ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega, response.rates)
     frequency = omega * (0.5 if math.isnan(ratio) else ratio)
@@ -375,7 +378,7 @@ def _result(
 def _small_motions(found: Place) -> tuple[np.ndarray, np.ndarray, FilmResponse | None]:
     """K and C (2, 2) of slow motions about a position whose film is the model's last, and its response.
 
-    None where K and C do not depend on the frequency.
+    The response is None if K and C do not depend on the frequency.
     """
     evaluation = found.evaluation
     if evaluation.is_central:
@@ -394,7 +397,7 @@ def _small_motions(found: Place) -> tuple[np.ndarray, np.ndarray, FilmResponse |
 
 
 def _faces(bearing: JournalBearing, position: float, load: float | None) -> tuple[ThrustModel | None, list[float]]:
-    """The films on end faces in the search, and what they are to carry along z, N; an empty list if they are held."""
+    """Films on end faces for the search, and their axial load, N; an empty list if the axial position is given."""
     along = [] if load is None else [require_number("equilibrium: axial_load", load, "N")]
     require_faces(bearing, "equilibrium", axial_position=position, axial_load=load)
     if along and position != 0.0:
@@ -406,17 +409,16 @@ def _faces(bearing: JournalBearing, position: float, load: float | None) -> tupl
 
 
 def critical_mass_error(bearing: JournalBearing, stiffness: np.ndarray, damping: np.ndarray) -> float:
-    """Estimate of the relative error of the critical mass, inf from 1 on.
+    """Estimate of the relative error of the critical mass; inf from 1 on.
 
-    The square of the whirl frequency of `whirl_threshold` is a difference of products that nearly cancel where the
-    bearing is nearly stable at any mass. With a = (k - Kxx)(k - Kyy) and b = Kxy Kyx in the axes in which
-    Kxy = -Kyx, whatever those of the joint, and the cancellation A = (|a| + |b|) / |a - b|, the error was found to be
-    less than::
+    The square of the whirl frequency of `whirl_threshold` is a difference of products that nearly cancel if the bearing
+    is nearly stable at any mass. In axes that are turned so that Kxy = -Kyx, a = (k - Kxx)(k - Kyy), b = Kxy Kyx, and
+    the cancellation is A = (|a| + |b|) / |a - b|. The measured error was less than::
 
         0.013 (96 / n) A^2                 rupture line on a grid of n columns, with `Gumbel` 0.016
         (0.0013 A^2 + 0.007) (96 / n)^2    rupture line inside the cells, with `Gumbel` without 0.007
 
-    in 99 % of films over L/D 0.25 to 2, eccentricity ratios from 0.3 on and 16 directions of the load.
+    in 99 % of films with L/D 0.25 to 2, eccentricity ratios of 0.3 and more, and 16 directions of the load.
     """
     columns = getattr(bearing.sized_film, "n_theta", None)
     if columns is None or math.isinf(bearing.closure.cavity_pressure):

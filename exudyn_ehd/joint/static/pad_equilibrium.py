@@ -1,19 +1,20 @@
 """Balance of a journal in tilting pads under a steady load, with stiffness and damping of journal and pads.
 
-Unknowns are the place x of the journal and, on flexible pivots, the shifts eta of the pads. For each of their values
-every pad is in balance by itself at the largest tilt, in the sense of rotation, at which the moment about its pivot
-falls through zero: a smaller tilt with no moment is unstable. The film of one pad is solved for tilts between those at
-which an edge touches. A pad without such a tilt is unloaded: it would tilt on until its leading edge rubs, which is
-called spragging. It is held at the tilt from which on its gap widens all along the pad, without pressure.
+Unknowns are the position x of the journal and, on flexible pivots, the shifts eta of the pads. For given unknowns, each
+pad alone is brought into balance: at the largest tilt, in the sense of rotation, at which the moment about its pivot
+falls through zero. A smaller tilt without moment is unstable. The film of the pad is solved for tilts between those at
+which an edge touches. A pad without such a tilt is unloaded: it would tilt further until its leading edge rubs, which
+is called spragging. It is held, without pressure, at the tilt from which on its gap widens all along the pad.
 
-Shear tips a pad over at a small load that is not zero. Where a pad would carry less than that, and its absence lets the
-journal come nearer, no position has it loaded. Then the pad that carries least counts as tipped over, and stays so.
+Shear tips a pad over if its load is below a small limit above zero. If a loaded pad would carry less than this limit,
+and the journal moves closer to an unloaded pad, no position is found in either state. Then the pad that carries the
+least is treated as tipped over for the rest of the search.
 
-With the tilts eliminated, Newton's method has the exact Jacobian ``K_aa - K_at K_tt^-1 K_ta``. Steps that do not lead
-downhill are damped after Levenberg and Marquardt as in `exudyn_ehd.joint.balance.newton`.
+Newton's method uses the exact Jacobian with the tilts eliminated, ``K_aa - K_at K_tt^-1 K_ta``. Steps that do not
+reduce the residual are damped after Levenberg and Marquardt as in `exudyn_ehd.joint.balance.newton`.
 
 Small motions ``q exp(i nu t)`` of all coordinates q = (x, y, tilts, shifts) obey ``Z q = f``, Z = K + i nu C - nu^2 M.
-Without forces on the pads the journal's are ``Z_jj - Z_jp Z_pp^-1 Z_pj``.
+Without forces on the pads, the dynamic stiffness of the journal is ``Z_jj - Z_jp Z_pp^-1 Z_pj``.
 """
 
 from __future__ import annotations
@@ -32,34 +33,38 @@ from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, require_number, warn_user
 
 WHERE = "equilibrium"
-# Share of the force that may be left.
+# Tolerance of the unbalance over the load. Larger: fewer iterations, less accurate positions.
 TOLERANCE = 1e-9
-# Places after which a search gives up, and force on a pad, over the load, from which on it carries.
+# Number of positions after which a search begins no further start; force on a pad, over the load, above which the pad
+# counts as carrying.
 MOST_PLACES, CARRIES = 400, 0.01
-# Round-off of the films' forces, as a share of them, and change of a pad's edge over the clearance that ends the search
-# for its tilt.
+# Relative round-off of the films' forces; also the displacement of a pad's edge, over the clearance, that ends the
+# search for its tilt.
 ROUNDING = 1e-11
-# Places between the tilts at which an edge touches, where the moment is looked at first.
+# Positions between the tilts at which an edge touches (0 and 1), at which the moment is evaluated first. More: a
+# balance is missed less often, slower.
 PLACES = (0.98, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.02)
-# Shifts of such places for a second look around the largest moment.
+# Offsets from the position with the largest moment, for a second series of evaluations around it.
 BETWEEN = np.linspace(0.08, -0.08, 9)
-# Starts on the load's line, over the assembled clearance; more of them find a nearer one. Where these fail, others
-# lie to its sides, as a journal in few pads may be pushed between two of them.
+# Eccentricities of initial guesses along the load, over the assembled clearance; more of them: a start nearer to the
+# solution. If all fail, directions of further initial guesses from the load, because a load may push the journal of a
+# bearing with few pads between two of them.
 STARTS = np.array([0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.05, 1.3, 1.6, 1.9])
 TURNS = np.exp(1j * np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9]))
-# Starts from which a search is made, the nearest ones.
+# Number of initial guesses, those with the smallest unbalance, from which a search is made.
 MOST_STARTS = 2
-# Angle from the pivot, rad, up to which the gap of an unloaded pad is to widen.
+# Angle from the pivot, rad, up to which the gap of an unloaded pad must widen along the pad.
 STEEPEST = 1.4
-# Clearance by which surfaces with a contact may overlap, over the machined one.
+# Largest overlap of surfaces with a contact, over the machined clearance. Smaller: pads rest less deep on the contact.
 OVERLAP = 0.1
 
 
 def open_tilts(pad: Pad, journal: np.ndarray, shift: float) -> tuple[float, float, float] | None:
-    """Tilts between which the film of a pad is open, and that from which on it widens, in the sense of rotation.
+    """Two tilts between which the film of a pad is open, and the tilt from which on the film widens.
 
     The gap is ``c - a cos psi - b sin psi`` at the angles psi of the columns from the pivot, with the journal's place
-    (a, b) in the pad's frame; b grows by the pivot's distance times the tilt. None where the pivot touches.
+    (a, b) in the pad's frame; b grows by the pivot's distance times the tilt. The tilts are in ascending order of the
+    sense of rotation. None if the gap is closed at the pivot.
     """
     a, b = np.array((pad.radial, pad.across)) @ pad.place(journal, shift, 0.0)
     sense, psi = math.copysign(1.0, pad.speed), pad.columns
@@ -78,9 +83,9 @@ def open_tilts(pad: Pad, journal: np.ndarray, shift: float) -> tuple[float, floa
 
 
 def settled(pad: Pad, journal: np.ndarray, shift: float, tipped: bool) -> PadLoads | None:
-    """Loads of a pad at the tilt at which it is in balance, for a place of the journal (2,) and a shift of the pad.
+    """Loads of a pad at its tilt of balance, for a position of the journal (2,) and a shift of the pad.
 
-    ``tipped``: the pad has tipped over, and only contact at its leading edge loads it. None where there is no film.
+    ``tipped``: the pad has tipped over and can be loaded at its leading edge only. None without a film.
     """
     tilts, sense = open_tilts(pad, journal, shift), math.copysign(1.0, pad.speed)
     if tilts is None:
@@ -105,7 +110,10 @@ def settled(pad: Pad, journal: np.ndarray, shift: float, tipped: bool) -> PadLoa
 
 
 def _between(pad: Pad, journal: np.ndarray, shift: float, ends: tuple[float, float]) -> PadLoads | None:
-    """Loads where the moment falls through zero between two tilts, by Newton's method and bisection; None without."""
+    """Loads at the tilt, between two tilts, at which the moment falls through zero; None if there is none.
+
+    Newton's method with bisection.
+    """
     (lower, upper), sense = ends, math.copysign(1.0, pad.speed)
     tilt = 0.5 * (lower + upper)
     finest = ROUNDING * pad.model.bearing.radial_clearance / pad.arm
@@ -124,17 +132,17 @@ def _between(pad: Pad, journal: np.ndarray, shift: float, ends: tuple[float, flo
 
 
 class Balanced(NamedTuple):
-    """A place of the journal with all pads in balance by themselves.
+    """A position of the journal with every pad in balance about its pivot.
 
     Parameters
     ----------
     unknowns : (2 + k,) array
-        Place of the journal and shifts of the pads, m.
+        Position of the journal and shifts of the pads, m.
     loads : list of PadLoads
     unbalance : (2 + k,) array
-        Forces that are left, N.
+        Sum of forces on the journal, with the load, and forces on the shifts, N; zero in balance.
     slope : (2 + k, 2 + k) array
-        Minus their derivative, N/m.
+        Minus the derivative of ``unbalance``, N/m.
     """
 
     unknowns: np.ndarray
@@ -144,7 +152,7 @@ class Balanced(NamedTuple):
 
     @property
     def left(self) -> float:
-        """Size of the forces that are left, N."""
+        """Norm of the unbalance, N."""
         return float(np.linalg.norm(self.unbalance))
 
     @property
@@ -153,12 +161,12 @@ class Balanced(NamedTuple):
         return np.array([np.hypot(*here.forces[:2]) for here in self.loads])
 
     def is_balanced(self, size: float, tolerance: float = TOLERANCE) -> bool:
-        """Return whether a share of a force, N, is left, or the round-off of the pads' forces."""
+        """Return whether the unbalance is below a share of a force, N, plus the round-off of the pads' forces."""
         return self.left <= tolerance * size + ROUNDING * float(self.carried.sum())
 
 
 class PadSearch:
-    """Search for the place of a journal in tilting pads under a load (2,), N.
+    """Search for the position of a journal in tilting pads under a load (2,), N.
 
     Parameters
     ----------
@@ -168,7 +176,7 @@ class PadSearch:
     load : (2,) array
         Force on the journal, N.
     size : float
-        Force that the unbalance is divided by, N.
+        Force over which the unbalance is measured, N.
     where : str
         Name of the caller, for error messages.
     """
@@ -179,7 +187,7 @@ class PadSearch:
         self.moves, self.tipped = bearing.pivot_stiffness is not None, np.zeros(bearing.pads, dtype=bool)
 
     def at(self, unknowns: np.ndarray) -> Balanced | None:
-        """Balance of all pads at a place; None if a film is closed."""
+        """Return the state with every pad in balance, for given unknowns; None if a film is closed."""
         n, loads, self.count = unknowns.size, [], self.count + 1
         unbalance, slope = np.append(self.load, np.zeros(n - 2)), np.zeros((n, n))
         for k, pad in enumerate(self.pads):
@@ -194,7 +202,7 @@ class PadSearch:
         return Balanced(unknowns, loads, unbalance, slope)
 
     def find(self) -> Balanced:
-        """Place in which the films carry the load; `FilmError` without one."""
+        """Find the position in which the films carry the load; `FilmError` without one."""
         along = complex(*self.load) / max(float(np.hypot(*self.load)), 1e-300) * self.bearing.radial_clearance
         unmoved, found = np.zeros(self.bearing.pads if self.moves else 0), []
         for k in range(self.bearing.pads + 1 if np.any(along) else 1):
@@ -202,7 +210,7 @@ class PadSearch:
                 break
             places = np.outer(TURNS if k == 1 else TURNS[:1], STARTS if np.any(along) else STARTS[:1]).ravel() * along
             tried = [self.at(np.array([place.real, place.imag, *unmoved])) for place in places]
-            # beside the load's line, places at which two pads or more carry
+            # in directions off the load, only positions at which two or more pads carry
             starts = [p for p in tried if p and (k != 1 or np.sum(p.carried > CARRIES * self.size) > 1)]
             starts.sort(key=lambda place: place.left)
             for start in starts[:MOST_STARTS]:
@@ -227,7 +235,7 @@ class PadSearch:
         )
 
     def _descend(self, here: Balanced) -> Balanced:
-        """Steps downhill from a place until the load is carried or no step leads further."""
+        """Reduce the unbalance by damped steps until the load is carried or no step makes progress."""
         first = 10.0 * self.size / self.bearing.radial_clearance
         resistance, longest, idle = 0.0, 0.5 * self.bearing.machined_clearance, 0
         while not here.is_balanced(self.size, 1e-2 * TOLERANCE) and idle < PATIENCE:
@@ -247,7 +255,7 @@ class PadSearch:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TiltingPadResult:
-    """Result of `equilibrium` for tilting pads: place of the journal, tilts of the pads, stiffness and damping.
+    """Result of `equilibrium` for tilting pads: position of the journal, tilts of the pads, stiffness and damping.
 
     Attributes
     ----------
@@ -256,36 +264,36 @@ class TiltingPadResult:
     eccentricity_ratio : float
         Distance of the journal axis from the bearing's centre over the assembled clearance.
     tilts : (n,) array
-        Angles of the pads about their pivots, rad, positive about z; 0 where they are built.
+        Angles of the pads about their pivots, rad, positive about z; 0 as built.
     pivot_displacements : (n,) array
         Outward displacements of the pads at their pivots, m; 0 with rigid pivots.
     loaded : (n,) bool array
-        False for an unloaded pad: no tilt balances the moment about its pivot. Without friction it would float, with it
-        it tilts until its leading edge rubs (spragging). Its tilt here is the one from which on its gap widens along
-        the pad, at which it does not press; it is held there in ``reduced``.
+        False for an unloaded pad: no tilt balances the moment about its pivot. Without friction it would float; with
+        friction it tilts until its leading edge rubs (spragging). Its tilt here is the one from which on its gap widens
+        along the pad, so that its film has no pressure; `reduced` holds it at this tilt.
     pad_forces : (n,) array
         Radial forces of the films on the pads, N.
     minimum_gaps, peak_pressures : (n,) arrays
-        Minimum film thickness of every pad, m, and largest film pressure, Pa.
+        Minimum film thickness of every pad, m, and its largest film pressure, Pa.
     minimum_gap, peak_pressure, power_loss : float
-        m, Pa, W of the whole bearing.
+        Values of the whole bearing, m, Pa, W.
     coordinates : tuple of str
         Names of the coordinates of the matrices: ``x``, ``y``, ``tilt 1`` ..., ``shift 1`` ...
     stiffness, damping, mass : (k, k) arrays
         K, C and M of small motions of all coordinates, SI units: minus the derivatives of the forces on the journal and
-        the generalized forces on the pads to coordinates and rates. Mass of the pads; the journal has none here.
+        the generalized forces on the pads to coordinates and rates. M contains the pads, but not the journal.
     residual : float
-        Force that is left over the size of the load.
+        Largest component of the unbalance over the size of the load.
     iterations : int
-        Places of the journal that were tried.
+        Number of positions of the journal that were tried.
     films : tuple of SteadyResult
         Film of every pad in the pad's frame, with its pictures.
     speed : float
         Spin, rad/s.
     memories : tuple of FilmMemory
-        Dynamic stiffness of the films with `ElrodAdams`, which follow motions with a delay, beyond that of slow
-        motions, to which ``stiffness`` and ``damping`` belong; `reduced` contains it, and `SolveEquilibrium` finds
-        vibrations with it.
+        Frequency-dependent stiffness of films with `ElrodAdams`, which follow motions with a delay. It is the
+        difference to slow motions, for which ``stiffness`` and ``damping`` hold. `reduced` and `SolveEquilibrium` use
+        it.
 
     Examples
     --------
@@ -330,12 +338,12 @@ class TiltingPadResult:
         )
 
     def reduced(self, frequency: float | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Stiffness and damping (2, 2) of the journal, the pads following its motion at a frequency.
+        """Stiffness and damping (2, 2) of the journal, with pads that follow its motion at a frequency.
 
-        Damping of motions much slower than the spin may be negative: the spin drives a pad that carries hardly any load
-        and follows late, as its film has coupled stiffnesses of opposite signs. A pad with 4 % of a bearing's load had
-        -5.1e6 N s/m at 2 rad/s, -2e5 at 100 and 1.7 at the spin of 263 rad/s, in its weakest direction, and in cycles
-        of its film in time the same within 3 %.
+        Damping of motions much slower than the spin may be negative. A pad that carries hardly any load follows with a
+        delay and is driven by the spin, because its film has coupled stiffnesses of opposite signs. Example: a pad with
+        4 % of a bearing's load, in its weakest direction, had -5.1e6 N s/m at 2 rad/s, -2e5 at 100 and 1.7 at the spin
+        of 263 rad/s. Cycles of its film in time gave the same within 3 %.
 
         Parameters
         ----------
@@ -367,10 +375,10 @@ class TiltingPadResult:
 def pad_equilibrium(
     bearing: TiltingPads, speed: float, load: np.ndarray, size: float, parallel: bool
 ) -> TiltingPadResult:
-    """Equilibrium of a journal in tilting pads under a load (2,), N, checked by `equilibrium`.
+    """Equilibrium of a journal in tilting pads under a load (2,), N; `equilibrium` has checked the arguments.
 
-    ``size``: force that the residual is divided by, N; ``parallel``: whether the journal has no tilt and nothing along
-    the axis is asked for.
+    ``size``: force over which the residual is measured, N; ``parallel``: True without tilt, axial position and axial
+    load.
     """
     if not parallel:
         raise InputError(

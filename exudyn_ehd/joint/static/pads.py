@@ -5,19 +5,20 @@ vectors e_r towards it and e_t = e_z x e_r. With the assembled clearance c_b, th
 the preload m, the pad's centre of curvature lies at ``O - m c_p e_r``, so that the gap at the pivot is c_b under a
 concentric journal. The pivot P lies ``rho = R + c_p + t`` from the centre of curvature, with the pad's thickness t.
 
-A pad tilts by delta about P and moves outward by eta on a flexible pivot. Its film lives in a frame fixed in the pad,
-with the origin in the centre of curvature. With the rotation Q by delta, the journal at x is there at
+A pad tilts by delta about P and moves outward by eta on a flexible pivot. Its film is described in a frame fixed in the
+pad, with the origin in the centre of curvature. With the rotation Q by delta, the journal at x has there the position
 
     p = Q^T (x - P - eta e_r) + rho e_r.
 
-The film presses with F on the journal, with the moment M about the pad's centre of curvature, in the pad's frame, and
-with their opposites on the pad. Virtual work gives the generalized forces
+The film exerts the force F on the journal and the moment M about the pad's centre of curvature, in the pad's frame; the
+opposites act on the pad. Virtual work gives the generalized forces
 
     Q_x = Q F,    Q_delta = -M + rho e_t . F,    Q_eta = -e_r . Q F - k eta.
 
-The film of a ring omits the resultant of its shear, which is c / R of the load. The moment of this force about a pivot
-decides where an almost unloaded pad lies. The shear stress on a pad, taken as even over its arc, has the torque -M and
-the resultant ``-M / R`` times the mean of e_theta over the arc: `PadModel` adds it, on the journal its opposite.
+The film of a ring omits the resultant of its shear, of the size c / R times the load. For an almost unloaded pad, the
+moment of this force about the pivot determines the tilt. The shear stress on a pad, assumed uniform over its arc, has
+the torque -M and the resultant ``-M / R`` times the mean of e_theta over the arc. `PadModel` adds it to the pad, and
+its opposite to the journal.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ class TiltingPads(Checked):
     """Description of a journal bearing of equal pads that tilt, for `CreateTiltingPadBearing` and `equilibrium`.
 
     Pads tilt about lines through their pivots, parallel to the bearing's axis. Their centres of mass lie in the pivots.
-    Every pad has a film of its own, fed at its edges: a `JournalBearing` with an `Arc`, `pad`.
+    Every pad has a separate film, fed at its edges: `pad` returns it as a `JournalBearing` with an `Arc`.
 
     Parameters
     ----------
@@ -85,11 +86,12 @@ class TiltingPads(Checked):
     pad_thickness : float
         Distance t from the pad's surface to its pivot, m.
     pad_mass, pad_inertia : float, default 0.0
-        Mass, kg, and moment of inertia about the axis of tilting through the pivot, kg m2. 0 for `equilibrium` only.
+        Mass, kg, and moment of inertia about the axis of tilting through the pivot, kg m2. They may be 0 for
+        `equilibrium` only.
     pivot_stiffness : float or None, default None
         Radial stiffness of a pivot, N/m; None: rigid.
     load_between_pads : bool, default True
-        Place of the pads for a load along -y: between two pivots, or False: on a pivot.
+        Position of the pads for a load along -y. True: it points between two pivots; False: onto a pivot.
     first_pivot : float or None, default None
         Angle of the first pivot from the joint's x about z, rad, in place of ``load_between_pads``. The others follow
         about z at equal distances.
@@ -102,8 +104,9 @@ class TiltingPads(Checked):
     turbulence : NgPan, Hirs or None, default None
         Turbulent films; None: laminar.
     thermal : LumpedThermal, FilmEnergy or None, default None
-        Temperature of the films, as for a `JournalBearing` with an ``arc``: oil that leaves a pad heats what enters it.
-        `equilibrium` takes the temperature in balance with every film; K and C hold at constant temperature.
+        Temperature of the films, as for a `JournalBearing` with an ``arc``: oil that leaves a pad heats the oil that
+        enters it. `equilibrium` computes the temperature in balance with every film; K and C hold at constant
+        temperature.
     end_pressures : (float, float), default (0.0, 0.0)
         Gauge pressures at both ends of the pads along the axis, Pa.
     edge_pressures : (float, float), default (0.0, 0.0)
@@ -112,7 +115,7 @@ class TiltingPads(Checked):
     Raises
     ------
     InputError
-        For values that can't be meant, and pads that overlap.
+        For values outside their ranges, and for pads that overlap.
 
     Examples
     --------
@@ -223,12 +226,12 @@ class PadEvaluation(Evaluation):
     model: PadModel
 
     def tangent(self, slow_motion: bool = False) -> np.ndarray:
-        """d wrench / d motion (6, 10), with that of the resultant of the shear."""
+        """d wrench / d motion (6, 10), including the resultant of the shear."""
         return self.model.with_shear @ super().tangent(slow_motion)
 
 
 class PadModel(BearingModel):
-    """Film between a journal and a pad, with the resultant of its shear; see the module.
+    """Film between a journal and a pad, with the resultant of its shear; see the module's docstring.
 
     Parameters
     ----------
@@ -239,7 +242,7 @@ class PadModel(BearingModel):
     Attributes
     ----------
     with_shear : (6, 6) array
-        Map from the wrench of the film without the resultant of its shear.
+        Map from the wrench without the resultant of the shear to the wrench with it.
     """
 
     def __init__(self, pads: TiltingPads, number: int) -> None:
@@ -255,7 +258,7 @@ class PadModel(BearingModel):
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> PadEvaluation:
-        """Evaluate the film as `BearingModel.evaluate` does."""
+        """Evaluate the film like `BearingModel.evaluate`, with the resultant of the shear in the wrench."""
         found = super().evaluate(motion, history, step, spin)
         wrench = self.with_shear @ found.wrench
         return PadEvaluation(found.status, found.motion, wrench, found.iterations, found.minimum_gap, found.film, self)
@@ -273,11 +276,11 @@ class PadLoads(NamedTuple):
     forces : (4,) array
         Generalized forces, N and Nm.
     stiffness, damping : (4, 4) arrays
-        Minus their derivatives to the coordinates and to the rates.
+        Minus the derivatives of the forces to the coordinates and to the rates.
     history : History or None
-        Memory of the film, with its temperature; None without.
+        Memory of the film with its temperature; None for an isothermal film.
     loaded : bool
-        Whether the film holds the pad at this tilt.
+        True: the film balances the pad at this tilt. False: the pad is unloaded and held.
     """
 
     tilt: float
@@ -318,13 +321,16 @@ class Pad:
         self.near: History | None = None
 
     def place(self, journal: np.ndarray, shift: float, tilt: float) -> np.ndarray:
-        """Place p (2,) of the journal in the pad's frame, m."""
+        """Position p (2,) of the journal in the pad's frame, m."""
         c, s = math.cos(tilt), math.sin(tilt)
         x, y = journal - self.pivot - shift * self.radial
         return np.array([c * x + s * y, c * y - s * x]) + self.arm * self.radial
 
     def at(self, journal: np.ndarray, shift: float, tilt: float) -> PadLoads | None:
-        """Loads of the steady film at a place of the journal (2,), a shift and a tilt of the pad; None without one."""
+        """Loads of the steady film at a position of the journal (2,), a shift and a tilt of the pad.
+
+        None if there is no film.
+        """
         motion = np.zeros(MOTION_SIZE)
         motion[:2], motion[8] = self.place(journal, shift, tilt), self.speed
         if self.model.effects.thermal is not None:
@@ -349,7 +355,7 @@ class Pad:
         return PadLoads(tilt, motion, found.wrench, forces, stiffness, -changes @ by_rate, self.near)
 
     def _maps(self, tilt: float, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Generalized forces (4, 6) of a wrench, and derivatives (10, 4) of a motion to the coordinates."""
+        """Map (4, 6) from a wrench to generalized forces, and derivatives (10, 4) of a motion to the coordinates."""
         c, s = math.cos(tilt), math.sin(tilt)
         turn, lever = np.array([[c, -s], [s, c]]), motion[:2] - self.arm * self.radial
         to_forces, by_place = np.zeros((4, 6)), np.zeros((MOTION_SIZE, 4))
@@ -359,7 +365,7 @@ class Pad:
         return to_forces, by_place
 
     def memory(self, own: PadLoads) -> FilmMemory | None:
-        """Response of the film of a position to motions of all coordinates at any frequency; None without a memory."""
+        """Response of the film at a position to motions of all coordinates at any frequency; None without a memory."""
         slow, response = response_of(self.model.evaluate_steady(own.motion, own.history))
         if response is None:
             return None

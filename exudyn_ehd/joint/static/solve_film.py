@@ -1,4 +1,4 @@
-"""Film of any gap, on a bearing's ring or on a slider, without a journal: `solve_film`."""
+"""Film in any given gap, on a bearing's ring or on a slider, without a journal: `solve_film`."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ from exudyn_ehd.status import (
 
 @dataclass(frozen=True, eq=False)
 class FilmResult:
-    """Result of `solve_film`: the film of any gap.
+    """Result of `solve_film`: the film in a given gap.
 
     Attributes
     ----------
     status : Status
     iterations : int
-        Linear solves.
+        Number of linear solves.
     pressure : (n, m) array
         Gauge pressure, Pa.
     gap : (n, m) array
@@ -43,7 +43,7 @@ class FilmResult:
     unbroken : (n, m) bool array
         True where the film is not cavitated; False at vertices with a prescribed pressure.
     inflow : (n, m) array
-        Volume flow that every prescribed vertex feeds into the film, m3/s; zero elsewhere.
+        Volume flow into the film at every vertex with a prescribed pressure, m3/s; zero elsewhere.
     load : float
         Integral of the pressure, N.
     fill : (n, m) array
@@ -100,10 +100,10 @@ def solve_film(
         Film thickness at the vertices, shape ``grid.shape``, m, > 0. Between two vertices their mean is used, unless
         ``stepped_gap``.
     lubricant : Lubricant
-        Its pressure and density laws take part; a shear law needs a bearing.
+        Lubricant with its pressure and density laws; a shear law is not supported, since it needs a bearing.
     surface_speed : (float, float), default (0.0, 0.0)
-        Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given; its half is
-        the entrainment speed. R omega for a journal in a bush at rest.
+        Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given. Half of it is
+        the entrainment speed. For a journal in a bush at rest it is (R omega, 0).
     gap_rate : (n, m) array or None, default None
         dh/dt at fixed position, m/s, negative where the gap closes; None: steady.
     cavitation : closure or None, default None
@@ -126,7 +126,7 @@ def solve_film(
     Raises
     ------
     InputError
-        For shapes that do not fit or a gap that is not positive.
+        For arrays of a wrong shape, or a gap that is not positive.
     FilmError
         If the film could not be solved.
 
@@ -199,7 +199,7 @@ def _check_kinds(grid: object, lubricant: Lubricant, cavitation: object, stepped
 
 
 def _require_field(name: str, values: float | np.ndarray, grid: FilmGrid) -> np.ndarray:
-    """Finite values (n, m); of the boundary also a single one."""
+    """Return finite values (n, m), for ``boundary`` also a single one; raise `InputError` for others."""
     try:
         field_ = np.asarray(values, dtype=float)
     except (TypeError, ValueError, OverflowError):

@@ -1,4 +1,4 @@
-"""A prescribed position of the journal, without a multibody model: its film, and those on the end faces.
+"""Film at a prescribed position of the journal, without a multibody model, and films on the end faces there.
 
 `exudyn_ehd.joint.static.equilibrium` finds the position that carries a load.
 """
@@ -52,25 +52,26 @@ class ThrustResult:
     Attributes
     ----------
     axial_position : float
-        Of the journal's centre, m.
+        Position of the journal's centre along the axis, m.
     force, moment : (3,) arrays
-        N and Nm, moment about the joint's origin.
+        Force, N, and moment about the joint's origin, Nm.
     axial_force, friction_torque : float
-        N along z; Nm about the bearing's axis.
+        Force along z, N; torque about the bearing's axis, Nm.
     axial_stiffness, axial_damping : float
-        -dF/dz, N/m, and -dF/dw, N s/m, F along z, w the axial speed. Plane faces at rest have a film with a cavity only
-        on the side that closes: midway between two equal faces the damping is that of one face, elsewhere it is nan,
-        as it differs between both directions of motion.
+        -dF/dz, N/m, and -dF/dw, N s/m, with F along z and the axial speed w. Between plane faces at rest, a film that
+        ruptures has a pressure on the closing side only. Midway between two equal faces the damping is that of one
+        face. Elsewhere it is nan, because it differs between both directions of motion.
     minimum_gap, peak_pressure, power_loss, contact_load : float
-        m, Pa, W, N, of all faces.
+        Minimum film thickness, m, peak pressure, Pa, power loss, W, and contact load, N, of all faces.
     edge_pressures : (k,) array
-        Pa at the inner radius of every face, the lower one first.
+        Pressure at the inner radius of every face, Pa; the lower face first.
     inflow, outflow : (k,) arrays
-        m3/s that every face takes in at its inner radius, and gives away at its outer one.
+        Flow into every face at its inner radius, and out of it at its outer radius, m3/s.
     theta, r : (n,), (m,) arrays
         Grid, rad and m.
     pressure, gap : (k, n, m) arrays
-        Of every face, Pa (gauge) and m; the lower one first. On edges of pads the gap is the mean of both sides.
+        Pressure, Pa (gauge), and film thickness, m, of every face; the lower face first. On edges of pads the gap is
+        the mean of both sides.
     tangent : (6, 11) array
         Derivative of force and moment to the motion (x, y, bx, by, their rates, omega, w) and the axial position, SI
         units. For plane faces at rest it is the mean over both directions of motion.
@@ -113,7 +114,7 @@ class ThrustResult:
 
 
 def require_faces(bearing: JournalBearing, where: str, **arguments: float | None) -> None:
-    """Refuse arguments that only faces give a meaning to, of a bearing without them."""
+    """Raise `InputError` for arguments that need thrust faces, if the bearing has none."""
     given = [f"{name} = {value!r}" for name, value in arguments.items() if value]
     if bearing.thrust is None and given:
         raise InputError(
@@ -151,7 +152,8 @@ def result_of(found: ThrustEvaluation) -> ThrustResult:
     )
 
 
-# Displacement of a linear bush over its thickness; above it the displacement is off by more than one per cent.
+# Strain of a linear bush (displacement over thickness) above which a warning is given, because the error of the
+# displacement exceeds 1 %.
 LARGEST_STRAIN = 0.01
 SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 
@@ -172,31 +174,31 @@ class SteadyResult(FilmRecord, FilmPictures):
     unbroken : (n, m) bool array
         True where the film is not cavitated.
     force, moment : (3,) arrays
-        On the journal, N and N m, from film and contact; moment about the joint's origin.
+        Force, N, and moment about the joint's origin, N m, on the journal, from film and contact.
     minimum_gap, peak_pressure, peak_angle : float
         Minimum film thickness, m; largest film pressure, Pa, and its angle, rad, from parabolas through the vertex with
         the largest pressure.
     friction_torque, friction_torque_unbroken : float
-        Torque on the journal about its own axis, N m: negative where it brakes a positive spin. The first holds the
-        shear of the whole clearance, cavity included, and the contact; the second the shear of the unbroken film only.
+        Torque on the journal about its own axis, N m; negative if it brakes a positive spin. The first contains the
+        contact and the shear of the whole clearance with cavities; the second only the shear of the unbroken film.
     friction_torque_bush : float
         Torque on the bush about the bearing's axis, N m: minus ``moment[2]``. It is smaller than that on the journal
         by the force times its lever arm, the eccentricity.
     power_loss, leakage, contact_load : float
-        Power loss, W; oil out of both ends together, m3/s; size of the contact's force, N. Where contact acts around
-        an arc this vector sum is less than the integral of the contact pressure (3 % over 0.8 rad).
+        Power loss, W; oil out of both ends together, m3/s; size of the contact's force, N. If the contact extends
+        around an arc, this vector sum is less than the integral of the contact pressure (by 3 % over 0.8 rad).
     pocket_pressures, restrictor_flows : (k,) arrays
         Pressure of every area of ``bearing.supply``, Pa; flow through its restrictor, m3/s, nan without one.
     inlet_flow : float
-        Oil that enters the loaded zone around the bearing, Q_1, m3/s; nan at zero speed:
+        Circumferential flow into the loaded zone, Q_1, m3/s; nan at zero speed:
         `exudyn_ehd.joint.model.results.passing_flows`. Tables have the side flow ratio Q_s / Q = leakage /
         inlet_flow and the flow variable Q / (R c N L) = inlet_flow / (R c N L), N = omega / (2 pi).
     oil_flow : float
-        Total oil flow: fresh oil that passes through the film, m3/s. It replaces what leaves through ends and supply
-        areas; without end pressures and supply areas it is the leakage. With an arc: the sum of ``supply_flows``.
+        Total oil flow: fresh oil that passes through the film, m3/s. It replaces oil that leaves through ends and
+        supply areas; without end pressures and supply areas it is the leakage. With an arc: sum of ``supply_flows``.
     supply_flows : (k,) array
-        Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With arcs, before it: oil that enters at
-        the leading and at the trailing edge of every arc in turn, 0 where it leaves.
+        Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With arcs, two values for each arc come
+        first: oil that enters at its leading and at its trailing edge, 0 for outflow.
     contact_torque, contact_power_loss, peak_contact_pressure : float
         Boundary friction of the contacts on the journal about its own axis, N m, part of ``friction_torque``; its
         loss, W, part of ``power_loss``; largest contact pressure, Pa.
@@ -217,20 +219,20 @@ class SteadyResult(FilmRecord, FilmPictures):
     peak_temperature : float or None
         Highest temperature of the film, K; None for an isothermal bearing.
     heat_by_oil, heat_to_walls : float or None
-        Heat that the oil carries out of the bearing, and that its walls give off, W; with `LumpedThermal` that of the
-        films on end faces, too. None for an isothermal bearing.
+        Heat that the oil carries out of the bearing, and heat that its walls give off, W; with `LumpedThermal`
+        including the films on end faces. None for an isothermal bearing.
     supply_temperature : float or None
         Temperature of the oil that enters, K: the given one, or that of a `Sump`; None for an isothermal bearing. The
         oil leaves at this temperature plus ``heat_by_oil`` over ``oil_flow`` times density and specific heat.
     walls : Walls or None
-        Temperatures of bush and journal, and the clearance that they leave; None where none conducts and
-        the film has one temperature across it.
+        Temperatures of bush and journal, and the clearance between them; None if neither conducts and the film has one
+        temperature across it.
     bore_displacement : (n, m) array or None
         Deflection of a flexible bore or a liner, m, positive outward; None for a rigid one.
     bore_coordinates : (k,) array or None
         Coordinates of a flexible bore (amplitudes of its modes), m; None for a rigid one.
     faces : ThrustResult or None
-        Films on the end faces, which all other values but the heat leave out; None without ``bearing.thrust``.
+        Films on the end faces; all other values except the heat are without them. None without ``bearing.thrust``.
     bearing : JournalBearing
     motion : (10,) array
         Motion of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore its coordinates and rates
@@ -284,12 +286,12 @@ class SteadyResult(FilmRecord, FilmPictures):
         return f"<SteadyResult: load {load}, minimum film thickness {gap}, peak pressure {peak}, power loss {loss}>"
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
-        """Find effects at this position that matter, are omitted, or take time without need; print it for a table.
+        """Find effects at this position that matter, that are omitted, or that are not needed; print it for a table.
 
         Parameters
         ----------
         liner : ElasticLiner or None, default None
-            Liner to assess elasticity with, for bearings without one; None: a steel ring around the journal.
+            Liner with which elasticity is assessed, for bearings with a rigid bore; None: a steel ring.
         measure_time : bool, default False
             True measures the share of computing time of each effect that is on.
 
@@ -300,8 +302,8 @@ class SteadyResult(FilmRecord, FilmPictures):
         model = model_at(replace(self.bearing, thrust=None), self.motion)
         near = None if self.temperature is None else results.remembered(self)
         if model.flexible:
-            model.evaluate(self.motion, near)  # the search for its shape starts from this film's
-        # with faces the heat is not that of this film alone
+            model.evaluate(self.motion, near)  # start the search for the bore's shape at this film's shape
+        # with faces keep the temperature, whose balance contains the heat of the faces
         settled = near if self.faces is not None and near is not None else history_at(model, self.motion, "audit", near)
         state = FilmState(self.motion, settled)
         return audit_of(Case(model, [state], liner=liner, measure_time=measure_time))
@@ -318,35 +320,35 @@ def steady(
     axial_speed: float = 0.0,
     axial_position: float = 0.0,
 ) -> SteadyResult:
-    """Film at a prescribed position and speed of the journal: pressure, force, friction, leakage.
+    """Compute the film at a prescribed position and speed of the journal: pressure, force, friction, leakage.
 
-    The position is given, whatever load the film then carries; `equilibrium` finds the position for a given load. All
+    The position is prescribed, and the load is a result; `equilibrium` finds the position for a given load. All
     arguments are in the joint frame: origin on the bearing's mid-plane, z = bearing axis, fixed in the housing.
 
     Warnings: `OverloadWarning` for a peak pressure above 3 GPa, or a force of film and contact above 1 GPa times the
-    projected area 2 R L; `GridWarning` where the grid gives the peak pressure with an error of more than some 5 %, with
-    a finer grid; `StrainWarning` where a `ModalBush`, which is linear, strains by more than 1 %; `HotFilmWarning` above
-    150 degrees Celsius. An `ANCFBush` is in static equilibrium with the film, at any strain.
+    projected area 2 R L; `GridWarning`, which names a finer grid, if the error of the peak pressure exceeds some 5 %;
+    `StrainWarning` if a `ModalBush`, which is linear, strains by more than 1 %; `HotFilmWarning` above 150 degrees
+    Celsius. An `ANCFBush` is in static equilibrium with the film, at any strain.
 
-    Supply areas in the journal (``rotating=True``) are at the angles at which they were described. The film is that of
-    the instant at which they pass there; oil content, temperature and deflection are those of areas that stand still.
+    Supply areas in the journal (``rotating=True``) are at the angles of their description. The film is that of the
+    instant at which they pass there; oil content, temperature and deflection are those of areas at rest.
 
     Parameters
     ----------
     bearing : JournalBearing
     speed : float
-        Spin omega of the journal against the housing, rad/s; positive about +z, 0 for a film that is squeezed only.
+        Spin omega of the journal against the housing, rad/s, positive about +z; 0 for pure squeeze.
     eccentricity_ratio : float
-        Distance of the journal axis from the bore's centre at the mid-plane over the radial clearance, >= 0; above 1
-        only where a surface deflects, wears or touches.
+        Distance of the journal axis from the bore's centre at the mid-plane over the radial clearance, >= 0. Values
+        above 1 are possible only with surfaces that deflect, wear or touch.
     direction : float, default 0.0
         Angle of the eccentricity from x towards y, rad.
     tilt : (float, float), default (0.0, 0.0)
         Slopes (bx, by) of the journal axis, which runs through (x + bx z, y + by z); m per m, so rad.
     velocity : (float, float), default (0.0, 0.0)
-        Velocity (dx/dt, dy/dt) of the journal axis, m/s. With `ElrodAdams` the journal has just got this velocity in
-        its steady film: full parts are squeezed, cavities keep their oil content. With an `ElasticLiner` under
-        `ElrodAdams` the velocity then changes no force, as the liner takes up the squeeze;
+        Velocity (dx/dt, dy/dt) of the journal axis, m/s. With `ElrodAdams` the film is that of the instant at which the
+        journal gets this velocity in its steady film: full parts are squeezed, cavities keep their oil content. With an
+        `ElasticLiner` and `ElrodAdams` the velocity then changes no force, because the liner takes up the squeeze;
         `EquilibriumResult.dynamic_stiffness` gives the forces of continued motion.
     axial_speed : float, default 0.0
         Speed w of the journal along z, m/s.
@@ -363,7 +365,7 @@ def steady(
         For values that are not numbers, a negative eccentricity ratio, an axial position without faces, or
         `ElrodAdams` without a source of oil.
     FilmError
-        If there is no film at this position, or the journal is through its contact by more than the clearance.
+        If there is no film at this position, or if the journal penetrates its contact by more than the clearance.
 
     Examples
     --------
@@ -394,7 +396,7 @@ def steady(
 
 
 def model_at(bearing: JournalBearing, motion: np.ndarray) -> BearingModel:
-    """Model for one position; a film with `MaximumGap` begins opposite to it, on -x for a concentric journal."""
+    """Model for one position; a film with `MaximumGap` begins opposite to it, for a concentric journal on -x."""
     turned = isinstance(bearing.inlet, MaximumGap)
     return build_study_model(bearing, math.atan2(motion[1], motion[0]) + math.pi if turned else 0.0)
 
@@ -415,7 +417,7 @@ def require_rest(bearing: JournalBearing, where: str) -> None:
 
 
 def require_oil(bearing: JournalBearing, where: str, axial_speed: float = 0.0) -> None:
-    """Raise `InputError` if a steady mass-conserving film has no source of oil and would starve to nothing."""
+    """Raise `InputError` if a steady mass-conserving film has no source of oil, so that it would run dry."""
     if axial_speed == 0.0 and lacks_oil(bearing):
         raise InputError(
             f"{where}: a steady film with ElrodAdams needs oil from somewhere, but no pressure is above the cavity "
@@ -431,7 +433,7 @@ MORE_OIL = (
 
 
 def _warn_of_strain(model: BearingModel, film: SolvedFilm, where: str) -> None:
-    """Warn where a `ModalBush` strains beyond what its modes describe."""
+    """Warn if a `ModalBush` strains by more than `LARGEST_STRAIN`, beyond which its linear modes are inaccurate."""
     modes = getattr(getattr(model, "bore", None), "modes", None)
     if film.bore is None or not isinstance(modes, BoreModes):
         return
@@ -447,7 +449,7 @@ def _warn_of_strain(model: BearingModel, film: SolvedFilm, where: str) -> None:
 def result_at(
     model: BearingModel, motion: np.ndarray, where: str, near: History | None = None, faces: ThrustModel | None = None
 ) -> SteadyResult:
-    """The steady film at ``motion``; arguments and `FilmError` as for `evaluate_at`."""
+    """Return the steady film at ``motion`` as a result, with warnings; arguments and errors as for `evaluate_at`."""
     found = evaluate_at(model, motion, where, near, faces)
     evaluation, film = found.evaluation, found.film
     _warn_of_strain(model, film, where)
@@ -459,7 +461,7 @@ def result_at(
     warn_of_overload(model.bearing, peak, force, where)
     warn_of_grid(film, where)
     warn_of_starved(model.bearing, film.solver.reservoirs, where)
-    # quotients of Python's own numbers overflow without a warning
+    # Python's floats, because quotients of numpy's floats warn of overflow
     reference, friction = float(model.bearing.reference_force(motion[8])) or math.nan, abs(float(q["friction_torque"]))
     pressures, flows = results.pocket_pressures(film)
     attitude = math.nan

@@ -18,8 +18,8 @@ from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.steady import require_rest
 from exudyn_ehd.status import ROUNDING, FilmError, InputError, require_number, require_plausible, require_type
 
-# Share of a speed from which on the next one has none in between, and change of temperature, K, that asks for one: a
-# tenth of the viscosity.
+# Smallest ratio of two successive speeds without an intermediate one; change of temperature, K, from which on an
+# intermediate speed is added: it changes the viscosity by a tenth. Larger ratio and smaller change: more film solves.
 NEXT, LEAP = 0.9, 3.0
 
 
@@ -34,11 +34,11 @@ class StribeckResult:
     friction_coefficient : (n,) array
         Friction torque on the journal about its own axis / (R load).
     friction_torque, contact_torque : (n,) arrays
-        Size of the friction torque on the journal and of its part from boundary friction, N m; both positive.
+        Size of the friction torque on the journal, and of its part by boundary friction, N m; both positive.
     contact_load_share : (n,) array
-        Contact load / load; above 1 the film pulls the journal into the contact.
+        Contact load / load; above 1 if the film pulls the journal into the contact.
     eccentricity_ratio, minimum_gap : (n,) arrays
-        e/c; minimum film thickness between the nominal surfaces, m (negative where asperities are pressed flat).
+        e/c; minimum film thickness between the nominal surfaces, m (negative if asperities are pressed flat).
     film_ratio : (n,) array
         lambda = ``minimum_gap`` / composite roughness; nan for smooth surfaces.
     power_loss, contact_power_loss, leakage : (n,) arrays
@@ -89,13 +89,13 @@ class StribeckResult:
 
 
 def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | np.ndarray) -> StribeckResult:
-    """Equilibrium and friction under a constant load (N, in -y on the journal) over a range of speeds.
+    """Compute equilibrium and friction under a constant load (N, in -y on the journal) over a range of speeds.
 
-    Every speed is a steady state with its own temperature (``thermal``) and shape of the bore (``bush``). Boundary
+    Every speed is a steady state, with temperature (``thermal``) and shape of the bore (``bush``) in balance. Boundary
     friction acts in full at every speed: ``GreenwoodTripp.transition_speed``, which smooths the reversal of friction in
-    a joint, is not used. Speeds are solved from the fastest to the slowest, each from the last position; intermediate
-    speeds are added where no position is found or the temperature jumps. Films on end faces (``bearing.thrust``) are
-    left out.
+    a joint, is not used. Speeds are solved from the fastest to the slowest, each from the last position. Intermediate
+    speeds are added if no position is found or the temperature jumps. Films on end faces (``bearing.thrust``) are
+    omitted.
 
     Parameters
     ----------
@@ -113,8 +113,8 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     Raises
     ------
     InputError
-        For a load or speeds that are not positive, an inlet that a moving journal can't have, supply areas that turn
-        with the journal, or a film that conserves mass and has no source of oil.
+        For a load or speeds that are not positive, ``inlet=MaximumGap()``, supply areas that turn with the journal, or
+        a film that conserves mass and has no source of oil.
     FilmError
         If no equilibrium was found at a speed.
 
@@ -136,7 +136,7 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     require_plausible("stribeck: speeds", speeds, values)
     require_rest(bearing, "stribeck")
     if bearing.asperity is not None:
-        # boundary friction passes through rest far below the slowest sliding
+        # so small that boundary friction acts in full at the slowest sliding
         slow = ROUNDING * float(values.min()) * bearing.journal_radius
         bearing = replace(bearing, asperity=replace(bearing.asperity, transition_speed=slow))
     model = build_study_model(bearing, 0.0)
@@ -161,10 +161,11 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
 
 
 def _follow(search: LoadSearch, before: Place | None, start: np.ndarray, speed: float) -> Place:
-    """Equilibrium at a speed from the one before, by steps of the speed's logarithm; the first from a motion (10,).
+    """Find the equilibrium at a speed by continuation from the last speed, in steps of the speed's logarithm.
 
-    Where the temperature leaps, the branch may end on the way, or the search have left it: the step is halved. Where no
-    shorter one leads on, the branch has ended, and the leap counts.
+    The first equilibrium starts from a motion (10,). If the temperature changes by more than `LEAP`, the step is
+    halved, because the branch of solutions may have ended or the search may have left it. If the change remains in the
+    shortest step, the branch has ended, and the other one is accepted.
     """
     first = start if before is None else before.motion
     last, failure = float(first[8]), None

@@ -1,20 +1,21 @@
-"""The film and the tilts with which thrust pads carry a steady axial load, with stiffness and damping.
+"""Film and tilts of thrust pads that carry a steady axial load, with stiffness and damping.
 
 A pad has the coordinates v = (h, phi_x, phi_y): film thickness at the pivot, m, and rotations of the pad about the
-radial and the tangential line through it, rad. Its gap is ``h - phi_x Y + phi_y (X - r_p)`` and the crown's share. The
-film presses the collar up by F and turns the pad by M_x and M_y about its pivot. With W a pad's share of the load
+radial and the tangential line through it, rad. Its gap is ``h - phi_x Y + phi_y (X - r_p)`` plus the crown. The film
+exerts the axial force F on the collar, and the moments M_x and M_y on the pad about its pivot. With a pad's share W of
+the load,
 
     F(v) = W,   M_x(v) = M_y(v) = 0,
 
-by Newton's method with the exact tangent, in the unknowns ln h and phi L / h for ln(F / W) and M / (F L), L the outer
-radius: plane pads in unbroken films have forces in proportion to 1 / h^2 at fixed phi / h. Small motions meet
-``Q = -(K v + C dv/dt)`` with K and C (3, 3). With the tilting inertia J and, of a pivot with stiffness k and damping c
-under a pad of mass m, S = k + i nu c - nu^2 m, the complex stiffness of one pad under a collar that moves along the
-axis at the frequency nu is
+is solved by Newton's method with the exact tangent. Its unknowns are ln h and phi L / h, its residuals ln(F / W) and
+M / (F L), with the outer radius L, because plane pads in unbroken films have forces proportional to 1 / h^2 at fixed
+phi / h. The forces of small motions are ``Q = -(K v + C dv/dt)`` with K and C (3, 3). J is the tilting inertia, and
+S = k + i nu c - nu^2 m for a pivot of stiffness k and damping c under a pad of mass m. The complex stiffness of one pad
+under a collar that moves along the axis at the frequency nu is
 
     Z = Z_f S / (Z_f + S),   Z_f = A_hh - A_h,phi (A_phi,phi - nu^2 J)^-1 A_phi,h,   A = K + i nu C,
 
-and Z_f on a rigid pivot: the pads follow the film without being held.
+and Z_f on a rigid pivot. The pads tilt freely.
 """
 
 from __future__ import annotations
@@ -34,43 +35,46 @@ from exudyn_ehd.status import FilmError, InputError, Status, require_number
 
 WHERE = "equilibrium"
 ALONG = "of TiltingThrustPads it presses the collar onto the pads along the axis."
-# Gap at the trailing edge of a first guess over that at the pivot; tried in this order.
+# Initial guesses of the gap at the trailing edge over that at the pivot, tried in this order.
 STARTS = (0.6, 0.85, 0.3)
-# Largest over smallest gap below which a film carries by no wedge, but by a vanishing gap.
+# Ratio of the largest to the smallest gap, below which a solution is rejected: it would carry by a vanishing gap, not
+# by a wedge.
 LEAST_WEDGE = 1.001
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ThrustPadsResult:
-    """Result of `equilibrium` for `TiltingThrustPads`: all pads are alike, and quantities are of all of them together.
+    """Result of `equilibrium` for `TiltingThrustPads`; all pads are equal, and forces, flows and losses are their sums.
 
     Attributes
     ----------
     film_thickness : float
-        At the pivot, m.
+        Film thickness at the pivot, m.
     inclination : (2,) array
         Slopes of the gap at the pivot along the radius, dh / dr, and in the sense of +theta, dh / (r dtheta), rad;
-        without a crown's.
+        without the slope of a crown.
     minimum_gap, maximum_gap, peak_pressure : float
-        m, m, Pa.
+        Smallest and largest film thickness, m; peak pressure, Pa.
     power_loss, friction_torque : float
-        W; torque on the collar about its own axis, positive about +z, N m.
+        Power loss, W; torque on the collar about its own axis, positive about +z, N m.
     flows : (4,) array
-        Oil that leaves the pads at their leading, trailing, inner and outer edges, m3/s; negative: that enters. Their
-        sum is 0: behind a cavity there leaves what the film has brought. The leading edge is that of a positive spin.
+        Oil that leaves the pads at their leading, trailing, inner and outer edges, m3/s; negative: oil that enters.
+        Their sum is 0: the flow at an edge behind a cavity is set to the flow of the film before the cavity. The
+        leading edge is that of a positive spin.
     stiffness, damping : float
-        Axial, of the collar on pads that follow, N/m and N s/m, at ``frequency``.
+        Axial stiffness and damping of the collar on pads that tilt freely, N/m and N s/m, at ``frequency``.
     frequency : float
         Size of the speed, rad/s.
     pad_stiffness, pad_damping : (3, 3) arrays
-        K and C of one film for film thickness at the pivot, m, and rotations of the pad about the radial and the
+        K and C of one film, for the film thickness at the pivot, m, and rotations of the pad about the radial and the
         tangential line through it, rad; SI units.
     residual, iterations : float, int
-        Largest residual of force and moments, over the load and the load times the outer radius; films solved.
+        Largest residual of force and moments, over the load and the load times the outer radius; number of films
+        solved.
     theta, r : (n,), (m,) arrays
         Grid of a pad: angle from the line through the pivot, rad, and radius, m.
     pressure, gap : (n, m) arrays
-        Pa (gauge), m.
+        Pressure, Pa (gauge), and film thickness, m.
     bearing : TiltingThrustPads
 
     Examples
@@ -146,7 +150,7 @@ class ThrustPadSearch:
     speed : float
         rad/s.
     load : float
-        Of one pad, N.
+        Load of one pad, N.
     """
 
     def __init__(self, pads: TiltingThrustPads, speed: float, load: float) -> None:
@@ -158,7 +162,7 @@ class ThrustPadSearch:
         self.by_wrench[[0, 1, 2, 2], [2, 3, 4, 2]] = 1.0, -1.0, -1.0, -pads.pivot_radius
 
     def at(self, v: np.ndarray) -> tuple[FaceState, np.ndarray]:
-        """The film, and the residuals (3,), infinite where no film presses."""
+        """Return the film and the residuals (3,); they are infinite without a film or without an axial force."""
         self.count += 1
         motion = np.zeros(FACE_SIZE)
         motion[:3], motion[6] = self.by_v @ (v - [self.pads.pivot_film, 0.0, 0.0]), self.speed
@@ -174,9 +178,9 @@ class ThrustPadSearch:
         return -tangent[:, :3] @ self.by_v, -tangent[:, 3:6] @ self.by_v
 
     def find(self, trailing: float) -> tuple[np.ndarray, FaceState, np.ndarray] | None:
-        """Coordinates, film and residuals of an equilibrium, from a gap at the ``trailing`` edge over the pivot's.
+        """Find coordinates, film and residuals of an equilibrium; None without one.
 
-        None if none was found.
+        ``trailing``: initial guess of the gap at the trailing edge over that at the pivot.
         """
         pads, L = self.pads, self.pads.outer_radius
         behind = pads.extent - pads.pivot_angle if self.speed > 0.0 else pads.pivot_angle
@@ -196,7 +200,7 @@ class ThrustPadSearch:
         return None
 
     def _shorter(self, v: np.ndarray, r: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, FaceState, np.ndarray]:
-        """Take the step, or the part of it that reduces the residuals; they are infinite where no part does."""
+        """Take the step, halved until it reduces the residuals; the residuals are infinite if no part does."""
         for part in 0.5 ** np.arange(HALVINGS):
             h = v[0] * math.exp(float(np.clip(part * step[0], -2.0, 2.0)))
             there = h * np.array([1.0, *(v[1:] / v[0] + part * step[1:] / self.pads.outer_radius)])
@@ -209,9 +213,9 @@ class ThrustPadSearch:
 def equilibrium_of_pads(
     pads: TiltingThrustPads, speed: float, load: object, others: tuple[object, ...] = ()
 ) -> ThrustPadsResult:
-    """Film and tilts with which pads carry an axial load, N, on a collar that turns at a speed, rad/s.
+    """Find film and tilts of pads that carry an axial load, N, under a collar that turns at a speed, rad/s.
 
-    ``others``: arguments of journal bearings, 0 or None where they were not given.
+    ``others``: arguments of journal bearings; any that is not 0 or None raises `InputError`.
     """
     if any(np.any(np.asarray(other, dtype=object)) for other in others):
         raise InputError(
@@ -240,7 +244,7 @@ def _result(search: ThrustPadSearch, v: np.ndarray, found: FaceState, r: np.ndar
     Z, grid, a = axial(pads, K, C, nu), film.annulus.grid, film.annulus
     (inner, outer), (first, last) = film.flows(), film.flows_along()
     flows = np.array([-first, last, -inner, outer])
-    # what a cavity's film has brought leaves at the edge behind it, where a full gap would carry more
+    # at the edge behind a cavity the flow is that of the film before it; a full gap would carry more
     flows[int(search.speed > 0.0)] -= flows.sum()
     peak, _, _ = refined_peak(film.fields.P, grid.fixed, grid.x, grid.link_x, grid.z)
     return ThrustPadsResult(

@@ -1,14 +1,14 @@
 """Exact tangent of a film on a flexible bore.
 
-The journal's wrench and the bore's loads to motion, q and q_t. With the balances r(u, m, delta, delta_t) = 0 of the
-film's unknowns u, one film solve for each change,
+Derivatives of the journal's wrench and the bore's loads to motion, q and q_t. With the balances
+r(u, m, delta, delta_t) = 0 of the film's unknowns u, each column needs one film solve,
 
     A du = -(dr/dm dm + dr/d delta S dq + dr/d delta_t S dq_t),
 
-all in one sweep over the factor; wrench and loads are sums over the unknowns, ``dQ = S^T W du``, and what depends on
-the motion at fixed u, as contacts do. The balances' derivatives to delta are a five-point stencil, since the gap on a
-link is the mean of its two columns; those to the motion are ten columns. What an integrator asks for is one combination
-of the derivatives to q and q_t, which costs as much as one of them.
+all in one sweep over the factor. Wrench and loads are sums over the unknowns, ``dQ = S^T W du``, plus terms that depend
+on the motion at fixed u, such as contacts. The balances' derivatives to delta are a five-point stencil, since the gap
+on a link is the mean of its two columns; those to the motion are ten columns. An integrator needs one combination of
+the derivatives to q and q_t, which costs as much as one of them.
 """
 
 from __future__ import annotations
@@ -44,12 +44,12 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
     film : SolvedFilm
     bore : Bore
     combinations : pairs of float
-        Factors (a, b), each of which asks for the k columns ``a d/dq + b d/dq_t``.
+        Factors (a, b); for each pair the k columns ``a d/dq + b d/dq_t`` are returned.
 
     Returns
     -------
     (6 + k, 10 + k * combinations) array
-        d/d motion, then the combinations.
+        Derivatives to the motion, then the combinations.
     """
     k, size = bore.size, MOTION_SIZE
     change, (by_q, by_rate) = Balances(film).changes(bore.shapes, *combinations), bore_tangent(film, bore)
@@ -70,9 +70,10 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
 
 
 def storage_tangent(film: SolvedFilm, bore: Bore) -> np.ndarray:
-    """Add to `elastic_tangent` by q and q_t, (6 + k, 10 + 2 k), what the oil in supply areas takes in slow motions.
+    """Return the part of the tangent (6 + k, 10 + 2 k) by the storage of oil in supply areas, for slow motions.
 
-    With the storage S u_t in the balances, and u_t = du/dx x_t, a second film solve: ``A du = -S du/dx x_t``.
+    It is to be added to `elastic_tangent` by q and q_t. With the storage S u_t in the balances, and u_t = du/dx x_t, it
+    needs a second film solve: ``A du = -S du/dx x_t``.
     """
     k, size = bore.size, MOTION_SIZE
     change, out = Balances(film).changes(bore.shapes, (1.0, 0.0)), np.zeros((6 + k, size + 2 * k))
@@ -94,9 +95,9 @@ class Balances:
     count : int
         Number of the unknowns.
     gradients : Gradients
-        To the scaled true gap.
+        Derivatives to the scaled true gap.
     motion : (10, count) array
-        To (scaled pose, scaled rates, vx, vz).
+        Derivatives to (scaled pose, scaled rates, vx, vz).
     """
 
     def __init__(self, film: SolvedFilm) -> None:
@@ -130,7 +131,7 @@ class Balances:
 def load_columns(film: SolvedFilm, bore: Bore) -> np.ndarray | csr_matrix:
     """Weights (count, k) of the unknowns in the film's loads on the bore, one column per coordinate, N.
 
-    Sparse with the bore's shapes.
+    The matrix is sparse if the bore's shapes are.
     """
     s, weight = film.solver, film.scales.force * film.grid.weight
     if film.oil.P_q is not None:
@@ -144,7 +145,7 @@ def load_columns(film: SolvedFilm, bore: Bore) -> np.ndarray | csr_matrix:
 
 
 def pressures_by_unknowns(film: SolvedFilm) -> csr_matrix | csc_matrix:
-    """Derivatives (n m, count) of the pressures, in front of the oil's law, to the unknowns."""
+    """Derivatives (n m, count) of the pressures, before the oil's pressure law is applied, to the unknowns."""
     w, y = film.solver.work, film.solver.system
     if y.continued is None:
         return at_unknowns(film, (w.active | y.fixed).astype(float))
@@ -158,9 +159,10 @@ def dense(matrix: np.ndarray | csr_matrix) -> np.ndarray:
 
 
 def at_unknowns(film: SolvedFilm, field: np.ndarray) -> csc_matrix:
-    """Values of a field (n, m) at the unknowns, each in its row and column (n m, count).
+    """Matrix (n m, count) with the value of a field (n, m) at each unknown, in the row of its vertex.
 
-    Of an area whose pressure is unknown at all of its vertices, times the derivative of the film's unknown there.
+    The column of a supply area with an unknown pressure has values at all vertices of the area, times the derivative of
+    the film's unknown to this pressure.
     """
     s, values = film.solver, field.reshape(-1)
     rows = s.work.order[: s.work.count]
@@ -209,7 +211,7 @@ def _contact_wrench(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarra
 
 
 def contact_slope(film: SolvedFilm, f: ContactFields) -> np.ndarray:
-    """Change of the contacts' force at every vertex with the scaled gap (n, m), N."""
+    """Derivative of the contacts' force at every vertex to the scaled gap (n, m), N."""
     g = film.grid
     return np.sum(f.slope, axis=0) * g.weight * g.reference_length**2
 

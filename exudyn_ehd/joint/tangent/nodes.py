@@ -1,21 +1,20 @@
-"""Forces of a film on the nodes of a bore, pressure and shear, and their exact tangent as matrix and as operator.
+"""Forces of pressure and shear of a film on the nodes of a bore, and their exact tangent as matrix and as operator.
 
-On the bore act, per area, in the directions of theta and z of the undeformed bore,
+The forces per area on the bore, in the directions of theta and z of the undeformed bore, are
 
     t_theta = mu U / h share - h / 2 dp/dx - p d(delta)/dx + friction of contacts,
 
-the last but one the pressure on the slope of what departs from a cylinder (delta: displacement, profile, wear); t_z
-likewise. Sums over the vertices times area are, to the differences that stand for the slopes, the bearing's own
-friction torque and axial force, whose parts are summed by parts (`exudyn_ehd.film.loads`); uneven drag between rough
-surfaces is left to what spreads the difference. What the deformed bore's directions would change is smaller by the
-bore's slope, displacement over radius.
+and the same for t_z. The third term is the pressure on the slope of the deviation delta from a cylinder (displacement,
+profile, wear). Sums over the vertices times area agree with the bearing's friction torque and axial force
+(`exudyn_ehd.film.loads`), except that slopes are differences here and integrals by parts there. Uneven drag between
+rough surfaces is part of the difference that is spread over the nodes. The directions of the deformed bore would change
+the forces by the bore's slope, displacement over radius, which is omitted.
 
-The tangent has three forces per node in place of the loads on the radial displacements of
-`exudyn_ehd.joint.tangent.bore`: the vertex forces change with the film's unknowns, and with motion and gap at fixed
-unknowns (`TractionChange`).
+The tangent has three forces per node, whereas `exudyn_ehd.joint.tangent.bore` has loads on the radial displacements.
+The vertex forces change with the film's unknowns, and with motion and gap at fixed unknowns (`TractionChange`).
 
-Forces of pressure and shear on the nodes add up to what the film's wrench contains; the rest of it is spread over the
-nodes as ``a + b x r``, with a and b from force and moment.
+The nodal forces must balance the film's wrench. The difference between the wrench and the sum of pressure and shear
+forces is spread over the nodes as ``a + b x r``, with a and b from force and moment.
 """
 
 from __future__ import annotations
@@ -41,7 +40,7 @@ from exudyn_ehd.joint.tangent.wrench import couette_field, motion_tangent, ratio
 
 
 def complete(x: np.ndarray, wrench: np.ndarray, local: np.ndarray) -> np.ndarray:
-    """Forces (count, 3, ...) at points x (count, 3) that oppose a wrench (6, ...): ``local`` and the spread rest."""
+    """Forces (count, 3, ...) at points x (count, 3) that balance a wrench (6, ...): ``local`` plus a spread rest."""
     rest = -wrench - np.tensordot(resultant(x), local.reshape(3 * len(x), *local.shape[2:]), 1)
     return local + np.tensordot(spread_matrix(x), rest, 1)
 
@@ -59,7 +58,7 @@ def resultant(x: np.ndarray) -> np.ndarray:
 def spread_matrix(x: np.ndarray) -> np.ndarray:
     """Map (count, 3, 6) from a force and a moment about O to forces with these resultants at points x (count, 3).
 
-    The forces are ``(a + b x r) / count``: the resultants' pseudo-inverse.
+    The forces are ``(a + b x r) / count``. The map is the pseudo-inverse of `resultant`.
     """
     onto = resultant(x)
     return np.linalg.solve(onto @ onto.T, onto).T.reshape(-1, 3, 6)
@@ -130,15 +129,16 @@ class TractionChange:
     Attributes
     ----------
     pressure, shear : sparse matrices (n m, count)
-        Of the pressures, and of the density of Couette shear, to the unknowns; None: the shear follows none.
+        Derivatives of the pressures, and of the density of Couette shear, to the unknowns; None if the shear does not
+        depend on them.
     gap : (3, n m) array
-        To the true gap at the same vertex, scaled.
+        Derivatives of the forces to the scaled true gap at the same vertex.
     load : (n m,) array
-        Of the radial force to the pressure.
+        Derivative of the radial force to the pressure.
     slope : (n m,) array
-        Of the force along theta to the bore's scaled slope in theta, and along z to that in z.
+        Derivative of the force along theta to the bore's scaled slope in theta, and of that along z to the slope in z.
     speed : (3, n m, 2) array
-        To omega and w.
+        Derivatives of the forces to omega and w.
     line : ShearOfLine or None
     """
 
@@ -167,7 +167,7 @@ class TractionChange:
         self.speed[1, :, 0] = density
         self.speed[2, :, 1] = density / R
         if oil.ratio_v is not None:
-            # the shear factor knows the scaled speed omega / 2
+            # the shear factor depends on the scaled speed omega / 2
             thinning = 0.5 * sheared * (film.share() * oil.ratio_v).ravel()
             self.speed[1:, :, 0] += speeds[:, None] * thinning
         if film.loads.recess is not None:
@@ -187,10 +187,10 @@ class TractionChange:
                 self.speed[1 + c] += np.outer(friction * P.ravel(), by_speed[c])
 
     def vertex_forces(self, unknowns: np.ndarray, gap: np.ndarray, moved: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Changes (3, n m, r) of the vertex forces.
+        """Changes (3, n m, r) of the vertex forces by r given changes.
 
-        With r changes of the unknowns (count, r), of the scaled gap and of the bore's scaled displacement ``moved`` (n
-        m, r), and of the speeds (2, r).
+        These are changes of the unknowns (count, r), of the scaled gap and of the bore's scaled displacement ``moved``
+        (n m, r), and of the speeds (2, r).
         """
         out = self.gap[:, :, None] * gap + self.speed @ speed
         pressure = self.pressure @ unknowns
@@ -204,15 +204,16 @@ class TractionChange:
 
 
 class ShearOfLine:
-    """Derivatives of the density of Couette shear that comes with the fills at a line inside its cells, at fixed
-    unknowns.
+    """Derivatives of the density of Couette shear through the fills at a rupture line inside its cells.
+
+    They hold at fixed unknowns.
 
     Attributes
     ----------
     motion : (10, n m) array
-        To (scaled pose, scaled rates, vx, vz).
+        Derivatives to (scaled pose, scaled rates, vx, vz).
     gap, rate : csr matrices (n m, n m)
-        To the scaled displacement of the bore and its rate.
+        Derivatives to the scaled displacement of the bore and its rate.
     """
 
     def __init__(self, film: SolvedFilm, scale: float) -> None:
@@ -226,9 +227,9 @@ class ShearOfLine:
 
 
 def _share_by_unknowns(film: SolvedFilm, pressure: csr_matrix) -> csr_matrix | None:
-    """Derivatives (n m, count) of share times viscosity ratio to the unknowns; None where there are none.
+    """Derivatives (n m, count) of the shear share times viscosity ratio to the unknowns; None if they are zero.
 
-    ``pressure``: those of the pressures in front of the oil's law.
+    ``pressure``: derivatives of the pressures before the oil's pressure law is applied.
     """
     s, oil, w = film.solver, film.oil, film.solver.work
     parts = []
@@ -244,7 +245,7 @@ def _share_by_unknowns(film: SolvedFilm, pressure: csr_matrix) -> csr_matrix | N
 
 
 def _share_by_fills(film: SolvedFilm) -> csr_matrix:
-    """Derivatives (n m, n m) of share times viscosity ratio to the fills, at the ends to those beside them."""
+    """Derivatives (n m, n m) of the shear share times viscosity ratio to the fills; at ends, to neighbouring fills."""
     fills = np.arange(film.grid.fixed.size).reshape(film.grid.shape)
     for end, beside, at_cavity in ends_of_cavities(film.solver.system, True):
         fills[at_cavity, end] = fills[at_cavity, beside]
@@ -252,14 +253,14 @@ def _share_by_fills(film: SolvedFilm) -> csr_matrix:
 
 
 def _density(film: SolvedFilm) -> np.ndarray:
-    """W share ratio / H on the lands, and the shear in recesses (n m,)."""
+    """Density of the Couette shear (n m,): W share ratio / H on the lands, plus the shear in recesses."""
     field = film.grid.shear_weight * film.share() / film.solver.H
     field = field if film.oil.ratio is None else field * film.oil.ratio
     return (field if film.loads.recess is None else field + film.loads.recess.density).ravel()
 
 
 def _extra_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
-    """Slopes of what departs from a cylinder (n m,); a flexible bore always does."""
+    """Slopes (n m,) along theta and z of the surfaces' deviation from cylinders."""
     assert film.extra is not None
     return film.extra.slope_x.ravel(), film.extra.slope_z.ravel()
 
@@ -290,9 +291,9 @@ class NodalTangent:
     def changes(
         self, motion: np.ndarray, place: np.ndarray | csr_matrix, rate: np.ndarray | csr_matrix
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Changes (6, r) of the wrench and (nodes, 3, r) of the nodal forces with r changes of the motion.
+        """Changes (6, r) of the wrench and (nodes, 3, r) of the nodal forces by r changes of the motion.
 
-        Those of the rigid surfaces (10, r), and of q and q_t (k, r).
+        These are changes of the motion of the rigid surfaces (10, r), of q (k, r) and of q_t (k, r).
 
         Raises
         ------
@@ -307,7 +308,7 @@ class NodalTangent:
     def _changes(
         self, motion: np.ndarray, place: np.ndarray | csr_matrix, rate: np.ndarray | csr_matrix
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return `changes` with so many that the processor's cache holds them."""
+        """Return `changes` for a number of columns whose data fit into the processor's cache."""
         p, line = self.film.parts, self.change.line
         moved, speed = dense(self.bore.shapes @ place), dense(self.bore.shapes @ rate)
         unknowns = -(self.by_motion @ motion + self.by_place @ moved + self.by_rate @ speed)

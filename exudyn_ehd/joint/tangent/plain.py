@@ -1,7 +1,7 @@
 """The tangent of a plain film in one kernel: rigid surfaces, an oil of constant viscosity, a linear film in its sets.
 
-It calls what `exudyn_ehd.joint.tangent.wrench.wrench_tangent` calls one by one for any film. On small grids those calls
-from Python take longer than what they call.
+`exudyn_ehd.joint.tangent.wrench.wrench_tangent` calls the same kernels one by one for any film. On small grids the
+calls from Python take longer than the kernels.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def is_plain(film: SolvedFilm) -> bool:
 
 
 def plain_tangent(film: SolvedFilm) -> np.ndarray:
-    """d wrench / d motion (6, 10) in SI units of a film that `is_plain`."""
+    """d wrench / d motion (6, 10) in SI units of a film for which `is_plain` holds."""
     s, p, g, w, scales, out = film.solver, film.parts, film.grid, film.journal, film.scales, np.empty((6, MOTION_SIZE))
     y, line, work = s.system, s.line, s.work
     _plain_tangent(
@@ -69,9 +69,10 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
 
 @njit(cache=True, nogil=True)
 def _plain_tangent(film, ends, between, matrix, size, exact, fields, active, shapes, mesh, speeds, loads, scales, out):
-    """Write the tangent.
+    """Write the tangent to ``out``.
 
-    ``film``: `FilmSystem.film`; ``ends``: whether it may end inside its cells; ``between``: `ColumnLine` or None;
+    ``film``: `FilmSystem.film`; ``ends``: whether the rupture line may lie inside cells; ``between``: `ColumnLine` or
+    None;
     ``exact``: whether the factor is that of the solution.
     """
     (order, number, _, upper, inv_diag, _, _), (count, width) = matrix, size

@@ -1,12 +1,12 @@
 """Exact tangent of a bearing's wrench: adjoint solves for its rows, then the chain rule to the motion.
 
-The wrench is linear in integrals S = sum w p of the film, with weights that follow the motion. With the film's residual
-r(p, H, H_t, v) = 0 a sum of them changes by ``-lam . dr`` with ``A^T lam = w``, and by what depends on the motion at
-fixed pressure. Four integrals carry force and moments, a fifth the shear where fill or pressure enter it; gap terms and
-uneven drag together have two more, a contact on a liner five.
+The wrench is linear in integrals S = sum w p of the film, with weights that depend on the motion. With the film's
+residual r(p, H, H_t, v) = 0 an integral changes by ``-lam . dr`` with ``A^T lam = w``, plus terms that depend on the
+motion at fixed pressure. Four integrals give force and moments. A fifth one is the shear, if it depends on fill or
+pressure. Gap terms and uneven drag together add two integrals, a contact on a liner adds five.
 
-The true gap is that of the surfaces: where a limiter acts, the film has another one. Where these differ, and where
-their roughness does, surfaces share the drag of a pressure gradient unevenly, see
+The true gap is that of the surfaces. If a limiter acts, the film's gap differs from it. If they differ, or if the
+surfaces' roughnesses differ, a pressure gradient exerts different drag on both surfaces, see
 `exudyn_ehd.film.surfaces.patir_cheng`.
 """
 
@@ -30,15 +30,15 @@ from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
 def wrench_tangent(film: SolvedFilm, slow_motion: bool = False) -> np.ndarray:
     """d wrench / d motion (6, 10) of a solved film in SI units.
 
-    With ``slow_motion`` the columns of the rates include what a liner's deflection adds to the squeeze when it
-    follows a slow motion, ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state.
+    With ``slow_motion`` the columns of the rates include the squeeze by a liner whose deflection follows a slow motion,
+    ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state.
     """
     if is_plain(film):
         return plain_tangent(film)
     rows = adjoint_rows(film)
     if len(rows) <= 7:
         return motion_tangent(film, film_gradient(film, rows, slow_motion))
-    # six rows instead of the film's and the contact's ten and more
+    # adjoint solves for the six components of the wrench, which are fewer than the integrals
     through_film = film_gradient(film, wrench_weights(film) @ rows, slow_motion) * film.parts.motion_scale
     return motion_tangent(film) + through_film
 
@@ -55,8 +55,10 @@ def film_gradient(film: SolvedFilm, rows: np.ndarray, slow_motion: bool) -> np.n
 
 
 def motion_tangent(film: SolvedFilm, gradient: np.ndarray | None = None) -> np.ndarray:
-    """d wrench / d motion (6, 10) for a ``gradient`` of the integrals of `adjoint_rows`, SI units; None: at fixed
-    unknowns."""
+    """d wrench / d motion (6, 10), SI units, for a ``gradient`` of the integrals of `adjoint_rows`.
+
+    ``gradient`` None: derivative at fixed unknowns.
+    """
     p, w, scales = film.parts, film.journal, film.scales
     changes, fills = np.zeros((8, MOTION_SIZE)), true_fills(film)
     shear, extra = changes[4], changes[5:7]
@@ -87,7 +89,8 @@ def motion_tangent(film: SolvedFilm, gradient: np.ndarray | None = None) -> np.n
 def _following_storage(film: SolvedFilm, lam: np.ndarray, columns: np.ndarray) -> np.ndarray:
     """Gradient (k, 4) of adjoint functionals lam (k, .) to the scaled rates through `FilmAnswers.surroundings`.
 
-    A second adjoint solve. ``columns``: `balance_gradients`. The rupture line adds nothing, since its liner rests.
+    It needs a second adjoint solve. ``columns``: `balance_gradients`. The rupture line has no part in it, since the
+    liner's rate is not included in its position.
     """
     p, s, gradient = film.parts, film.solver, np.empty((len(lam), MOTION_SIZE))
     rows = -lam * s.surroundings()
@@ -110,7 +113,7 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
 
 
 def _difference_columns(film: SolvedFilm, solver: ClassicSolver) -> np.ndarray:
-    """Return `balance_gradients` of central differences."""
+    """Return `balance_gradients` of the solver with central differences."""
     shapes, f = film.grid.gap_shapes[0].reshape(-1, 4), film.limited
     none = np.zeros_like(shapes)
     if f is None:
@@ -132,7 +135,7 @@ def has_extra_rows(film: SolvedFilm) -> bool:
 
 
 def integrals_in_wrench(film: SolvedFilm) -> np.ndarray:
-    """Weights (6, 8) of S_c, S_s, S_zc, S_zs, C, slopes in theta and z, and the ends' force in the wrench."""
+    """Weights (6, 8) in the wrench of S_c, S_s, S_zc, S_zs, C, slopes in theta and z, and the ends' force."""
     w, scales, out = film.journal, film.scales, np.empty((6, 8))
     size = scales.force, scales.shear, film.grid.reference_length
     integral_weights(w.pose, size, (w.omega, w.axial_speed), out)
@@ -156,7 +159,7 @@ def wrench_rows(film: SolvedFilm) -> np.ndarray:
 
 
 def adjoint_rows(film: SolvedFilm) -> np.ndarray:
-    """Weights of the unknowns in the integrals that they enter, (k, count); those of supply areas come last."""
+    """Weights (k, count) of the unknowns in the integrals; those of supply areas come last."""
     s, w = film.solver, film.solver.work
     rows = _rows_at(film, w.order[: w.count], s.system.continued)
     if (r := s.reservoirs) is None:
@@ -166,7 +169,7 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
 
 
 def _rows_at(film: SolvedFilm, at: np.ndarray, continued: np.ndarray | None) -> np.ndarray:
-    """Return `adjoint_rows` of flat vertices ``at``, by the solver's unknown; ``continued`` as for `FilmSystem`."""
+    """Return `adjoint_rows` at vertices with the flat indices ``at``; ``continued`` as for `FilmSystem`."""
     g, s, y, oil, liner = film.grid, film.solver, film.solver.system, film.oil, film.parts.liner
     active, shear, extra = s.work.active | g.fixed, shear_needs_adjoint(film), has_extra_rows(film)
     pressed = liner is not None and film.pressing is not None
@@ -185,7 +188,7 @@ def _rows_at(film: SolvedFilm, at: np.ndarray, continued: np.ndarray | None) -> 
         rows[4] = _shear_weights(film, active).ravel()[at]
     if continued is not None:
         rows_of_linear(continued, y.fixed, y.linked, y.cavity_pressure, s.work.active, s.work.number, rows)
-    # what follows the pressure of a vertex itself
+    # terms that depend on the pressure of the vertex itself
     if liner is not None or oil.ratio_g is not None:
         rows[4] += _shear_of_vertices(film, active).ravel()[at]
     if liner is not None and film.loads.drag is not None:
@@ -198,9 +201,9 @@ def _rows_at(film: SolvedFilm, at: np.ndarray, continued: np.ndarray | None) -> 
 
 
 def _shear_weights(film: SolvedFilm, active: np.ndarray) -> np.ndarray:
-    """Weights of the Couette integral at the vertices (n, m).
+    """Weights of the unknowns in the Couette integral at the vertices (n, m).
 
-    Through the oil's pressure where they are pressures, through fill elsewhere.
+    Pressures act through the viscosity ratio, fills through the sheared share.
     """
     s, y, g, oil, out = film.solver, film.solver.system, film.grid, film.oil, np.empty(film.grid.shape)
     by_pressure = s.nothing if oil.ratio_q is None else oil.ratio_q
@@ -213,7 +216,7 @@ def _shear_weights(film: SolvedFilm, active: np.ndarray) -> np.ndarray:
 
 
 def _shear_of_vertices(film: SolvedFilm, active: np.ndarray) -> np.ndarray:
-    """Return what in `_shear_weights` follows the liner's deflection and the pressure's gradients."""
+    """Return the part of the shear weights (n, m) through the liner's deflection and the pressure's gradients."""
     p, s, g, oil, out = film.parts, film.solver, film.grid, film.oil, np.zeros(film.grid.shape)
     if p.liner is not None:
         out += couette_slopes(film)[0] * p.liner.gap_slopes.H_P * active
@@ -242,7 +245,7 @@ def couette_field(film: SolvedFilm) -> tuple[np.ndarray, float]:
 
 
 def _film_gap_slope(film: SolvedFilm) -> np.ndarray | None:
-    """d(film gap)/d(gap of the undeformed surfaces) (n, m) at fixed pressure; None where it is one."""
+    """d(film gap)/d(gap of the undeformed surfaces) (n, m) at fixed pressure; None if it is one everywhere."""
     if film.parts.liner is not None:
         return film.parts.liner.gap_slopes.H_r
     return None if film.limited is None else film.limited.slope
@@ -258,7 +261,7 @@ def _add_contacts(film: SolvedFilm, f: ContactFields, out: np.ndarray) -> None:
 
 
 def boundary_fields(film: SolvedFilm) -> np.ndarray:
-    """Gradients (2, n, m) of the pressure force of the ends, and of the edges of arcs, to the true gap."""
+    """Gradients (2, n, m), to the true gap, of the pressure force on the ends and on the edges of arcs."""
     slope, edges, g = _film_gap_slope(film), film.scales.edges, film.grid
     fields = np.zeros((2, *g.shape))
     fields[0][:, [0, -1]] = np.outer(g.width_x, film.scales.ends * (-1.0, 1.0))
@@ -270,7 +273,7 @@ def boundary_fields(film: SolvedFilm) -> np.ndarray:
 def _boundary_gradients(film: SolvedFilm) -> np.ndarray:
     """Gradients (2, 4) of `boundary_fields` to the scaled pose.
 
-    That of a ring's ends vanishes but where a limiter or a contact acts on the gap.
+    For the ends of a full ring they vanish unless a limiter or a contact acts on the gap.
     """
     whole = _film_gap_slope(film) is None and not film.grid.edges.size
     if film.scales.edges is None and (whole or not film.scales.ends.any()):
@@ -279,10 +282,11 @@ def _boundary_gradients(film: SolvedFilm) -> np.ndarray:
 
 
 def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
-    """Gradients at fixed pressure to the true gap.
+    """Gradients of the drag integrals E_x and E_z to the true gap, at fixed pressure.
 
-    Of E_x on the links i -> i+1 (1, n, m), of E_z at the vertices (1, n, m). On a liner, to the gap of the undeformed
-    surfaces, whose contact follows: of E_x and E_z at the vertices (2, n, m).
+    The first is that of E_x on the links i -> i+1 (1, n, m), the second that of E_z at the vertices (1, n, m). On a
+    liner they are gradients to the gap of the undeformed surfaces, with the contact's deflection; the second one then
+    has E_x and E_z at the vertices (2, n, m).
     """
     face, cell = _slopes(film)
     if film.parts.liner is None:
@@ -299,7 +303,7 @@ def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
 
 
 def drag_by_deflection(film: SolvedFilm, liner: LinerFilm) -> np.ndarray:
-    """Gradients (2, n, m) of E_x and E_z to the unknown pressures through the gap that a liner leaves them."""
+    """Gradients (2, n, m) of E_x and E_z to the unknown pressures, through the deflection of a liner."""
     face, cell = _slopes(film)
     return np.stack((to_ends(face, 0), cell)) * liner.deflection_by_pressure
 
@@ -315,9 +319,9 @@ def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
 
 
 def true_gradients(film: SolvedFilm) -> Gradients:
-    """`FilmAnswers.gradients` to the true gap, with the balances of supply areas with an unknown pressure behind.
+    """`FilmAnswers.gradients` to the true gap, followed by those of supply areas with an unknown pressure.
 
-    These are sums over the balances at their vertices.
+    The balance of such an area is a sum over the balances at its vertices.
     """
     s, found = film.solver, _to_true_gap(film, film.solver.gradients())
     if (r := s.reservoirs) is None:
@@ -329,7 +333,7 @@ def true_gradients(film: SolvedFilm) -> Gradients:
 
 
 def true_fills(film: SolvedFilm) -> Gradients | None:
-    """The fills of `FilmSolver.fill_gradients` to the true gap; None without."""
+    """Derivatives of the fills to the true gap, from `FilmSolver.fill_gradients`; None if there are none."""
     fills = film.solver.fill_gradients()
     return None if fills is None else _to_true_gap(film, fills[1])
 
@@ -340,15 +344,15 @@ def _to_true_gap(film: SolvedFilm, gradients: Gradients) -> Gradients:
 
 
 def shear_of_fills(film: SolvedFilm) -> np.ndarray:
-    """Couette shear (n, m) that comes with the fill of every vertex."""
+    """Couette shear (n, m) per fill of every vertex."""
     return ratio_of(film) * film.grid.shear_weight / film.solver.H + shear_of_ends(film)
 
 
 def shear_of_ends(film: SolvedFilm) -> np.ndarray:
-    """Density of the ends' shear at the vertices beside them (n, m), where they share their fill."""
+    """Shear density of the ends, at the neighbouring vertices (n, m) whose fill they have."""
     return at_beside_ends(film.solver.system, ratio_of(film) * film.grid.shear_weight / film.solver.H)
 
 
 def ratio_of(film: SolvedFilm) -> np.ndarray:
-    """Viscosity ratio (n, m) that shear sees."""
+    """Viscosity ratio (n, m) for the shear; ones if it is constant."""
     return film.solver.ones if film.oil.ratio is None else film.oil.ratio
