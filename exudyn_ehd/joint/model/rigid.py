@@ -198,7 +198,7 @@ class BearingModel:
         # displacement of a flexible bore and its rate, scaled
         self._displacement: np.ndarray | None = None
         self._rate = p.solver.nothing
-        self._plain = not self.flexible and self.effects == Effects() and is_plain(p)
+        self._least_gap = self.effects.least_plain_gap if not self.flexible and is_plain(p) else None
         self._set_viscosity(1.0)
 
     def _set_viscosity(self, ratio: float) -> None:
@@ -215,6 +215,17 @@ class BearingModel:
         if p.liner is not None and self.effects.liner is not None:
             p.liner.beta = self.effects.liner.compliance * pressure / c
         p.solver.pressure_scale = pressure
+        self._prescribe()
+
+    def _prescribe(self) -> None:
+        """Write the known pressures of ends, edges of arcs and supply areas into the solver's field."""
+        p, P, law = self.parts, self.solver.pressure, self.effects.pressure_law
+        P[:, 0], P[:, -1], _, *edges = self._prescribed.tolist()
+        if edges:
+            P[p.grid.edges.ravel()] = np.array(edges)[:, None]
+        if p.supply is not None:
+            fed = p.supply.pressures()
+            p.supply.prescribe((fed if law is None else law.transform(fed)) / self.scales.pressure, P)
 
     def forget(self) -> None:
         """Drop the warm start. It never changes a result, only the computing time."""
@@ -285,15 +296,16 @@ class BearingModel:
         """
         p, c = self.parts, self.bearing.radial_clearance
         p.evaluations += 1
-        if self._plain:
-            motion = np.array(motion, dtype=float)
-            film, iterations = solve_plain(p, self.scales, motion, self._prescribed, step)
-            if film is not None:
-                return Evaluation(Status.CONVERGED, motion, film.loads.wrench, iterations, film.minimum_gap, film, self)
-        journal = self._journal(motion, spin)
         temperature, walls = self._set_temperature(history)
         if p.supply is not None and p.supply.turn(spin):
             self.solver.refresh_fixed()
+            self._prescribe()
+        if self._least_gap is not None:
+            motion, begin = np.array(motion, dtype=float), (history, step, temperature)
+            film, iterations = solve_plain(p, self.scales, motion, self._prescribed, self._least_gap, begin)
+            if film is not None:
+                return Evaluation(Status.CONVERGED, motion, film.loads.wrench, iterations, film.minimum_gap, film, self)
+        journal = self._journal(motion, spin)
         # a sum is finite only if all its terms are
         if not math.isfinite(sum(journal.motion.tolist())):
             return self._result(Status.NOT_FINITE, journal, 0, math.nan)
@@ -382,20 +394,14 @@ class BearingModel:
         return smallest, ExtraGap(height, slopes[0], slopes[1], surfaces)
 
     def _solve(self, journal: JournalMotion, history: History | None, step: float) -> tuple[Status, int]:
-        """Solve the film for the gaps in the solver's buffers, with the prescribed pressures."""
-        p, law = self.parts, self.effects.pressure_law
-        P, past = self.solver.pressure, History() if history is None else history
-        P[:, 0], P[:, -1], cavity, *edges = self._prescribed.tolist()
-        if edges:
-            P[p.grid.edges.ravel()] = np.array(edges)[:, None]
-        if p.supply is not None:
-            fed = p.supply.pressures()
-            p.supply.prescribe((fed if law is None else law.transform(fed)) / self.scales.pressure, P)
+        """Solve the film for the gaps and the prescribed pressures in the solver's buffers."""
+        p, past = self.parts, History() if history is None else history
         if p.liner is not None:
             p.liner.delta_old = past.deflection
         if self.solver.reservoirs is not None:
             self.solver.reservoirs.before = past.pockets
         along = 0.5 * journal.axial_speed / self.grid.reference_length
+        cavity = float(self._prescribed[2])
         return self.solver.advance(0.5 * journal.omega, along, cavity, past.void, past.outflow, step)
 
     def evaluate_steady(

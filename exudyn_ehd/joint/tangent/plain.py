@@ -19,7 +19,7 @@ from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, wrench_gra
 from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
 from exudyn_ehd.film.solvers.matrix import factor_symmetric
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.joint.plain_film import has_plain_edges
+from exudyn_ehd.joint.plain_film import has_plain_edges, has_plain_supply
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
 
 
@@ -37,7 +37,7 @@ def is_plain(film: SolvedFilm) -> bool:
         and film.extra is None
         and film.limited is None
         and film.pressing is None
-        and p.supply is None
+        and has_plain_supply(p)
         and has_plain_edges(p.bearing)
         and not p.uneven_drag
     )
@@ -54,7 +54,7 @@ def plain_tangent(film: SolvedFilm) -> np.ndarray:
         work.symmetric,
         (work.count, work.width),
         work.exact,
-        (s.area if s.squeeze else s.nothing, s.nothing, g.weight, s.metric),
+        (s.area if s.squeeze else s.nothing, s.nothing, g.weight, g.shear_weight, s.metric),
         work.active,
         g.gap_shapes,
         g.mesh,
@@ -78,7 +78,7 @@ def _plain_tangent(film, ends, between, matrix, size, exact, fields, active, sha
     (order, number, _, upper, inv_diag, _, _), (count, width) = matrix, size
     terms, fixed, _, line = film
     H, HF, P = terms[11], terms[12], terms[14]
-    by_rate, by_gap, weight, metric = fields
+    by_rate, by_gap, weight, shear_weight, metric = fields
     vx, vz, flow_x, cavity_shear, squeeze, pc = speeds
     if not exact:
         factor_symmetric(film, matrix, active, (YES, count, width))
@@ -105,7 +105,7 @@ def _plain_tangent(film, ends, between, matrix, size, exact, fields, active, sha
         add_columns(rows, places, by, shapes, columns)
     changes, field = np.zeros((8, 10)), np.empty(H.shape)
     functional_gradients(lam, columns, changes[:4])
-    couette_gradient(H, weight, active, fixed, cavity_shear, field)
+    couette_gradient(H, shear_weight, active, fixed, cavity_shear, field)
     by_gap, by_pose = field.reshape(-1), shapes[0].reshape(-1, 4)
     for c in range(by_gap.size):
         for q in range(4):

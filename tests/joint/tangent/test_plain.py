@@ -10,6 +10,8 @@ from exudyn_ehd.joint.tangent.plain import is_plain
 
 GRID = ehd.FiniteLength(n_theta=48, n_z=6)
 GROOVE = ehd.AxialGroove(angle=1.0, width_angle=0.3, pressure=2e5)
+RING = ehd.CircumferentialGroove(z=0.004, width=3e-3, pressure=1e5)
+ORIFICE = ehd.Orifice(diameter=1e-3, supply_pressure=5e5)
 PLAIN = {
     "default": {},
     "on vertices": {"cavitation": ehd.SwiftStieber(line_in_cells=False)},
@@ -20,9 +22,13 @@ PLAIN = {
     "no squeeze": {"squeeze": False},
     "short": {"film": ehd.ShortBearing()},
     "short, on vertices": {"film": ehd.ShortBearing(), "cavitation": ehd.SwiftStieber(line_in_cells=False)},
+    "fed by a hole and a ring": {"supply": (ehd.Hole(angle=2.0, diameter=4e-3, pressure=1e5), RING)},
+    "groove in the journal": {"supply": (ehd.AxialGroove(angle=1.0, width_angle=0.3, pressure=2e5, rotating=True),)},
     "long": {"film": ehd.LongBearing(), "supply": (GROOVE,)},
 }
 OTHERS = {
+    "groove with a floor": {"supply": (ehd.AxialGroove(angle=1.0, width_angle=0.3, pressure=2e5, depth=1e-4),)},
+    "orifice": {"supply": (ehd.AxialGroove(angle=1.0, width_angle=0.3, supply=ORIFICE),)},
     "Gumbel": {"cavitation": ehd.Gumbel()},
     "mass": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
     "oil": {"lubricant": ehd.Lubricant(viscosity=0.02, pressure_law=ehd.RoelandsPressure(coefficient=2e-8))},
@@ -48,10 +54,10 @@ def test_same_as_for_any_film(make_bearing, name, monkeypatch):
     model = build_model(make_bearing(1.0, **({"film": GRID} | PLAIN[name])))
     seen = 0
     for motion in motions(20):
-        evaluation = model.evaluate(motion)
+        evaluation = model.evaluate(motion, spin=0.3 * seen)
         if evaluation.film is None:
             continue
-        assert is_plain(evaluation.film) is ("supply" not in PLAIN[name])
+        assert is_plain(evaluation.film) is (name != "long")
         seen += 1
         plain = evaluation.tangent()
         with monkeypatch.context() as patch:
