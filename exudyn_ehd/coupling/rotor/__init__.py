@@ -2,10 +2,11 @@
 
 Module map
 ----------
-api        `SolveEquilibrium`, `SolveThreshold`, `stability_map`
-result     results: coefficients, unbalance response; eigenvalues, also with films that follow with a delay
-solve      equilibrium of all films from speed to speed; checks of the theory's assumptions
-films      the films about a state in which rotors spin
-system     an Exudyn system about such a state, without its films; flexible bushes and journals in it
-spinning   which nodes turn with a rotor, and about which axis
+api         `SolveEquilibrium`, `SolveThreshold`, `stability_map`
+result      results: coefficients, eigenvalues, response to unbalance
+vibrations  eigenvalues and modes, also in films that follow with a delay
+solve       equilibrium of all films from speed to speed; checks of the theory's assumptions
+films       the films about a state in which rotors spin
+system      an Exudyn system about such a state, without its films; flexible bushes and journals in it
+spinning    which nodes turn with a rotor, and about which axis
 """

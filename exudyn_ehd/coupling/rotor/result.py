@@ -10,20 +10,16 @@ from typing import TYPE_CHECKING
 
 import exudyn as exu
 import numpy as np
-from scipy.linalg import block_diag, eig
 
 from exudyn_ehd.coupling.contract import INITIAL, Index, NodeIndex, ObjectIndex, require_system
-from exudyn_ehd.joint.static.dynamic_stiffness import ROUNDING, FilmMemory
+from exudyn_ehd.coupling.rotor.vibrations import vibrations, vibrations_in_films_that_follow
+from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.pictures.records import Target
 from exudyn_ehd.status import InputError, require_number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-# Largest unbalanced force of a vibration in the whole dynamic stiffness, over the largest of its terms. Larger:
-# spurious vibrations may be accepted.
-LEFT = 1e-7
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -155,7 +151,7 @@ class RotorResult:
         for k, memories in enumerate(self.memories):
             if memories:
                 M, D, K = (part[k] for part in matrices)
-                found[k] = vibrations_in_films_that_follow(M, D, K, memories, abs(float(self.speeds[k])))
+                found[k] = vibrations_in_films_that_follow(M, D, K, memories)
         size = max(len(values) for values, _ in found)
         values = np.full((len(found), size), np.nan, dtype=complex)
         vectors = np.full((len(found), matrices[0].shape[1], size), np.nan, dtype=complex)
@@ -173,10 +169,10 @@ class RotorResult:
     def eigenvalues(self) -> np.ndarray:
         """Eigenvalues (k, m), complex: growth rate (1/s) + i frequency (rad/s), sorted by signed frequency; m = 2n.
 
-        With flexible bushes and journals there are more, because film and surface also vibrate in waves around the
-        bore. In films that follow a vibration with a delay (`ElrodAdams`, liners, compressible volumes) the oil content
-        vibrates too. Then those 2n motions are returned in which the bodies have the largest part, or one more to
-        complete a pair. Speeds with fewer motions than others have nan in some entries, here and in ``modes``.
+        In films that follow a vibration with a delay (`ElrodAdams`, liners, compressible volumes, flexible bushes and
+        journals) oil content and surfaces vibrate too. Then there are more: the 2n motions in which the bodies have the
+        largest part, those in which it is above a tenth, and all that grow. Speeds with fewer motions than others have
+        nan in some entries, here and in ``modes``.
         """
         return self._modes[0]
 
@@ -413,62 +409,3 @@ class UnbalanceResponse:
         named = chosen if isinstance(chosen, Mapping) else {str(item): item for item in chosen}
         curves = [(text, self.amplitude(item), self.phase(item)) for text, item in named.items()]
         return plot_response(self.speeds, curves, self.is_stable, path=path)
-
-
-def vibrations(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues (2n,) and vectors (n, 2n) of ``(s^2 M + s D + K) y = 0``."""
-    n = len(M)
-    lower = -np.linalg.solve(M, np.hstack((K, D)))
-    values, vectors = np.linalg.eig(np.vstack((np.eye(n, 2 * n, n), lower)))
-    return values.astype(complex), vectors[:n].astype(complex)
-
-
-def vibrations_in_films_that_follow(
-    M: np.ndarray, D: np.ndarray, K: np.ndarray, films: Sequence[FilmMemory], speed: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues (m,) and vectors (n, m) of a system with films that follow it with a delay.
-
-    With the coordinates w of films and flexible bores (`FilmResponse.linear`), z = (y, w), and v = s z for coordinates
-    with second derivatives,
-
-        -K z = s (D z + M v),    s z = v,
-
-    is one linear problem; its 1 / s are the eigenvalues of a matrix. If oil content, liners or compressible volumes
-    follow with a delay, the 2n motions in which the bodies have the largest part are returned, and all that grow. This
-    part is the product of left and right eigenvectors in y and v over that in all coordinates. If only bores follow,
-    motions that decay within a turn without oscillation are omitted. All returned motions satisfy the whole dynamic
-    stiffness.
-    """
-    n, whole = len(M), []
-    parts = [(film, film.response.linear()) for film in films]
-    for k, own in enumerate((K, D, M)):
-        slow = [film.slow[k] if k < 2 else 0.0 for film in films]
-        corner = own + sum(
-            f.loads @ (of[k][:4, :4] - known) @ f.places for (f, of), known in zip(parts, slow, strict=True)
-        )
-        right = np.hstack([film.loads @ of[k][:4, 4:] for film, of in parts])
-        below = np.vstack([of[k][4:, :4] @ film.places for film, of in parts])
-        whole.append(np.block([[corner, right], [below, block_diag(*(of[k][4:, 4:] for _, of in parts))]]))
-    fast, size = np.flatnonzero(whole[2].any(axis=0)), len(whole[0])
-    moved = np.linalg.solve(whole[0], -np.hstack((whole[1], whole[2][:, fast])))
-    inverse, left, vectors = eig(np.vstack((moved, np.eye(size, size + fast.size)[fast])), left=True)
-    there = np.abs(inverse) > ROUNDING * np.abs(inverse).max()
-    values, left, vectors = 1.0 / inverse[there].astype(complex), left[:, there], vectors[:, there]
-    # remove imaginary parts that are round-off in motions without oscillation
-    values = np.where(np.abs(values.imag) > LEFT * np.abs(values), values, values.real)
-    if any(film.response.remembers for film in films):
-        own, products = np.append(np.arange(n), size + np.flatnonzero(fast < n)), left.conj() * vectors
-        part = np.abs(products[own].sum(axis=0) / products.sum(axis=0))
-        # a tolerance, so that both motions of a pair are taken
-        taken = (part >= (1.0 - LEFT) * np.sort(part)[-2 * n]) | (values.real > 0.0)
-    else:
-        taken = values.real >= -np.maximum(np.abs(values.imag), speed / (2.0 * np.pi))
-    values, vectors = values[taken], vectors[:n, taken].astype(complex)
-    solves = [_left(M, D, K, films, s, y) < LEFT for s, y in zip(values, vectors.T, strict=True)]
-    return values[solves], vectors[:, solves]
-
-
-def _left(M: np.ndarray, D: np.ndarray, K: np.ndarray, films: Sequence[FilmMemory], s: complex, y: np.ndarray) -> float:
-    """Unbalanced force of a vibration in the whole dynamic stiffness, over the largest of its terms."""
-    terms = np.array([s**2 * M @ y, s * D @ y, K @ y, *(film.beyond(s) @ y for film in films)])
-    return float(np.abs(terms.sum(axis=0)).max() / np.abs(terms).max())

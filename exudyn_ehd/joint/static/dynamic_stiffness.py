@@ -59,7 +59,7 @@ RAYS = np.outer((0.1, 0.4, 1.0, 2.5, 6.0, 15.0, 60.0, 300.0), np.exp(1j * np.rad
 # F_x, F_y, M_y, -M_x.
 PLACES, LOADS, SIGNS = 4, [0, 1, 4, 3], np.array([1.0, 1.0, 1.0, -1.0])
 
-# Round-off of the k in `whirl_threshold`, over the largest stiffness.
+# Round-off: of the k in `whirl_threshold`, over the largest stiffness; of a direction in a space of responses.
 ROUNDING = 1e-12
 
 
@@ -90,6 +90,8 @@ class FilmResponse:
         Spin, rad/s, > 0.
     stiffness : (k, k) array
         Stiffness of a flexible bore or journal in its coordinates.
+    fastest : float
+        Frequency above which Z does not hold, rad/s: the rupture line inside the cells does not see a liner deflect.
     remembers : bool
         True: the film has a memory, so that its forces depend on the frequency.
     """
@@ -97,7 +99,7 @@ class FilmResponse:
     def __init__(self, evaluation: Evaluation) -> None:
         film, bore, m = evaluation.solved, None, MOTION_SIZE
         self.speed = abs(film.journal.omega)
-        self.rates, self.stiffness, self.remembers = np.zeros(0), np.zeros((0, 0)), True
+        self.rates, self.stiffness, self.remembers, self.fastest = np.zeros(0), np.zeros((0, 0)), True, math.inf
         if isinstance(evaluation, ElasticEvaluation):
             elasticity, bore = evaluation.model.elasticity, evaluation.model.bore
             T, self.stiffness = elasticity.tangent(evaluation, exact=True), elasticity.stiffness.copy()
@@ -162,6 +164,7 @@ class FilmResponse:
         """
         s, w, by_gap = film.solver, film.solver.work, self.by_rate
         if (line := s.line_gradients()) is not None:
+            self.fastest = self.speed * float(np.abs(RAYS).max())
             scale = -film.scales.force * film.parts.motion_scale[PLACES : 2 * PLACES, None]
             by_gap = by_gap - line.columns(film.grid.gap_shapes, s.unknowns)[PLACES : 2 * PLACES] * scale
         follows = np.append(liner.gap_slopes.D_r.reshape(-1)[w.order[: w.count]], np.zeros(s.unknowns - w.count))
@@ -183,26 +186,25 @@ class FilmResponse:
     def linear(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """K, C and M (p, p) of ``K z + C z_t + M z_tt = load`` for z = (journal's motions, q, reduced film unknowns).
 
-        The film's unknowns and balances are projected on the spaces of the responses to motions and to loads at some
+        The film's unknowns and balances are projected on the space of the responses to motions and to loads at some
         frequencies. At these frequencies Z and its derivative are exact.
         """
         K, C = self.rest[0] + np.pad(self.stiffness, (PLACES, 0)), self.rest[1]
         if not self.remembers:
             return K, C, np.zeros_like(K)
-        answers, weights = [], []
+        found = []
         for nu in self._frequencies((0.0, *RAYS)):
             factor = splu(csc_matrix(self.matrix + 1j * nu * self.store), permc_spec="NATURAL")
             Z = self._whole(nu)
             motions, loads = (np.vstack((np.eye(PLACES), self._followed(way))) for way in (Z, Z.T))
             by_motion = self.by_pose + 1j * nu * (self.by_content + self.by_rate) - nu**2 * self.by_sway
-            answers.append(factor.solve(by_motion.T @ motions))
-            weights.append(factor.solve(self.rows @ loads, trans="T"))
-        V, W = (_real_space(columns) for columns in (answers, weights))
+            found += [factor.solve(by_motion.T @ motions), factor.solve(self.rows @ loads, trans="T")]
+        V = _real_space(found)
         none, film = np.zeros((len(K), V.shape[1])), np.zeros((V.shape[1], V.shape[1]))
         return (
-            np.block([[K, -self.rows.real.T @ V], [W.T @ self.by_pose.T, W.T @ (self.matrix @ V)]]),
-            np.block([[C, none], [W.T @ (self.by_content + self.by_rate).T, W.T @ (self.store @ V)]]),
-            np.block([[np.zeros_like(K), none], [W.T @ self.by_sway.T, film]]),
+            np.block([[K, -self.rows.real.T @ V], [V.T @ self.by_pose.T, V.T @ (self.matrix @ V)]]),
+            np.block([[C, none], [V.T @ (self.by_content + self.by_rate).T, V.T @ (self.store @ V)]]),
+            np.block([[np.zeros_like(K), none], [V.T @ self.by_sway.T, film]]),
         )
 
     def _frequencies(self, shares: Sequence[complex]) -> np.ndarray:
@@ -253,9 +255,12 @@ class FilmResponse:
 
 
 def _real_space(found: list[np.ndarray]) -> np.ndarray:
-    """Orthonormal basis (n, p) of the real and imaginary parts of complex columns (n, m)."""
-    columns = np.concatenate([part for some in found for part in (some.real, some.imag) if part.any()], axis=1)
-    return np.linalg.qr(columns)[0]
+    """Orthonormal basis (n, p) of the real and imaginary parts of complex columns (n, m), up to round-off."""
+    columns = np.concatenate([part for some in found for part in (some.real, some.imag)], axis=1)
+    lengths = np.linalg.norm(columns, axis=0)
+    basis, sizes, _ = np.linalg.svd(columns[:, lengths > 0.0] / lengths[lengths > 0.0], full_matrices=False)
+    space: np.ndarray = basis[:, sizes > ROUNDING * sizes.max(initial=0.0)]
+    return space
 
 
 class FilmMemory(NamedTuple):
@@ -356,12 +361,14 @@ def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) ->
     return math.sqrt(square) / omega, k / square
 
 
-def threshold(stiffness: Callable[[float], np.ndarray], omega: float, rates: np.ndarray) -> tuple[float, float]:
+def threshold(
+    stiffness: Callable[[float], np.ndarray], omega: float, rates: np.ndarray, fastest: float = math.inf
+) -> tuple[float, float]:
     """Whirl ratio and critical mass of a rigid rotor on a bearing of the dynamic stiffness Z(nu).
 
     The first two coordinates of Z are x and y. Results as for `whirl_threshold`. Thresholds are searched for between
-    0.05 and 2 times the spin omega > 0, with `FilmResponse.rates` also around these rates; the one with the smallest
-    mass is returned.
+    0.05 and 2 times the spin omega > 0, with `FilmResponse.rates` also around these rates up to `FilmResponse.fastest`.
+    The one with the smallest mass is returned.
     """
 
     def values(frequency: float) -> np.ndarray:
@@ -370,7 +377,7 @@ def threshold(stiffness: Callable[[float], np.ndarray], omega: float, rates: np.
 
     nu = omega * np.geomspace(SLOWEST, FASTEST, STEPS)
     if rates.size:
-        low, high = min(nu[0], rates.min() * SLOWEST**2), max(nu[-1], rates.max() / SLOWEST**2)
+        low, high = min(nu[0], rates.min() * SLOWEST**2), max(nu[-1], min(rates.max() / SLOWEST**2, fastest))
         nu = np.geomspace(low, high, math.ceil(STEPS * math.log(high / low) / math.log(FASTEST / SLOWEST)))
     imag, found = np.array([values(frequency).imag for frequency in nu]), []
     for k, q in np.argwhere(np.diff(np.sign(imag), axis=0)):

@@ -351,7 +351,10 @@ def _result(
 ) -> EquilibriumResult:
     """Result at a position that was found; ``small``: its `_small_motions`."""
     (K, C, response), bearing, omega = small, model.bearing, abs(float(found.motion[8]))
-    ratio, mass = whirl_threshold(K, C, omega) if response is None else threshold(response.at, omega, response.rates)
+    if response is None:
+        ratio, mass = whirl_threshold(K, C, omega)
+    else:
+        ratio, mass = threshold(response.at, omega, response.rates, response.fastest)
     frequency = omega * (0.5 if math.isnan(ratio) else ratio)
     Z = K + 1j * frequency * C if response is None else response.at(frequency)[:2, :2]
     there = Z.real, Z.imag / frequency

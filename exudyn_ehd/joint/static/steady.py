@@ -152,8 +152,7 @@ def result_of(found: ThrustEvaluation) -> ThrustResult:
     )
 
 
-# Strain of a linear bush (displacement over thickness) above which a warning is given, because the error of the
-# displacement exceeds 1 %.
+# Strain of a linear bush (displacement over thickness) above which, with an error above 1 %, a warning is given.
 LARGEST_STRAIN = 0.01
 SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 

@@ -1,5 +1,7 @@
 """Rotors in two films against `equilibrium`, closed forms of the rigid rotor, and time integration."""
 
+import itertools
+
 import exudyn as exu
 import numpy as np
 import pytest
@@ -49,6 +51,9 @@ def test_a_symmetric_rotor_is_two_single_bearings():
     assert abs(vibration.imag) / speed == pytest.approx(single.whirl_ratio, rel=1e-8)
 
 
+OIL = {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)}
+STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
+PIN = ehd.ElasticJournal(material=STEEL, span=(-0.02, 0.02), held=ehd.HeldEnds(), tolerance=0.2)
 MEMORIES = {
     "oil content": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
     "liner": {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=3e8)},
@@ -110,6 +115,47 @@ def test_a_symmetric_rotor_in_films_that_remember_is_two_single_bearings(options
     (Z,) = single.dynamic_stiffness([SPEED])
     expected = np.linalg.solve(2.0 * (Z - SPEED**2 * mass * np.eye(2)), unbalance * SPEED**2 * np.array([1.0, -1j]))
     np.testing.assert_allclose(response.films[0, 0], expected, rtol=1e-5)
+
+
+def slowest_motion(result, speed):
+    """Largest real part of the eigenvalues that Newton's method for det T(s) = 0 finds from many first guesses."""
+    M, D, K = result.mass_matrix[0], result.damping_matrix[0], result.stiffness_matrix[0]
+    scale = np.abs(K).max()
+
+    def determinant(s):
+        return np.linalg.det((K + s * D + s * s * M + sum(memory.beyond(s) for memory in result.memories[0])) / scale)
+
+    found = []
+    for decay, frequency in itertools.product((-0.01, 0.05, 0.15, 0.5, 1.0), (0.0, 0.3, 0.49, 0.8, 1.2)):
+        s = speed * complex(-decay, frequency)
+        for _ in range(40):
+            slope = (determinant(s * (1.0 + 1e-6)) - determinant(s * (1.0 - 1e-6))) / (2e-6 * s)
+            step = determinant(s) / slope
+            s -= step
+            if not abs(step) > 1e-8 * abs(s):
+                found.append(s.real)
+                break
+    assert len(found) > 3
+    return max(found)
+
+
+TWO_LOBES = ehd.two_lobe(preload=0.3)
+DIFFICULT = {
+    "light rotor on hard liners": (2.0, 1200.0, {**OIL, "bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e10)}),
+    "light rotor on soft liners": (2.0, 1200.0, {**OIL, "bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)}),
+    "oil without a cavity": (200.0, 9.81, {**OIL, "end_pressures": (2e6, 2e6)}),
+    "hardly a cavity": (200.0, 9.81, {**OIL, "end_pressures": (3e5, 3e5)}),
+    "two lobes": (200.0, 9.81, {**OIL, "arcs": TWO_LOBES}),
+    "light rotor, elastic journal": (2.0, 1200.0, {"journal": PIN}),
+}
+
+
+@pytest.mark.parametrize("name", sample(list(DIFFICULT), 2))
+def test_growth_is_that_of_the_slowest_motion(name):
+    mass, weight, options = DIFFICULT[name]
+    mbs, _, _ = shaft(mass=mass, transverse=0.02 * mass, polar=0.01 * mass, weight=weight, film=bearing(**options))
+    found = ehd.SolveEquilibrium(mbs, SPEED)
+    assert found.growth[0] == pytest.approx(slowest_motion(found, SPEED), rel=1e-6)
 
 
 def unstable_motions(result):

@@ -145,6 +145,27 @@ def test_response_on_a_liner_is_that_of_the_film_in_time(scene):
     assert result.critical_mass_error < math.inf
 
 
+@pytest.mark.parametrize("line_in_cells", [True, False])
+def test_slow_motions_meet_the_damping_of_a_liner_on_which_surfaces_touch(line_in_cells):
+    """First derivative of Z to the frequency, of a film without account of its oil: the damping of slow motions."""
+    asperity = ehd.GreenwoodTripp(composite_roughness=2e-6, composite_modulus=1e11)
+    liner = ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)
+    closure = ehd.SwiftStieber(cavity_pressure=-5e4, line_in_cells=line_in_cells)
+    model = build_study_model(bearing(film=(48, 6), bush=liner, asperity=asperity, cavitation=closure), 0.0)
+    follows = 0.0
+    for eccentricity in (0.6, 0.9, 1.1):
+        motion = np.append(eccentricity * C * np.array([0.8, -0.6]), np.zeros(8))
+        motion[8] = SPEED
+        film = model.evaluate_steady(motion)
+        (stiffness, damping), response = response_of(film)
+        low, double = (response.at(nu).imag / nu for nu in (1e-3 * SPEED, 2e-3 * SPEED))
+        assert response.at(0.0).real == pytest.approx(stiffness, rel=1e-12, abs=1e-12 * np.abs(stiffness).max())
+        assert np.abs((4.0 * low - double) / 3.0 - damping).max() < 1e-9 * np.abs(damping).max()
+        follows = max(follows, float(np.abs(film.film.parts.liner.gap_slopes.D_r).max()))
+    # the contact is no softer than the liner
+    assert follows > 0.3
+
+
 def test_on_a_hard_liner_as_on_a_rigid_bore():
     hard = ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e16)
     rigid, lined = (at_load(bearing(film=(48, 6), bush=bush), 0.35) for bush in (None, hard))
@@ -232,3 +253,21 @@ def test_frequencies_are_checked():
     with pytest.raises(ehd.InputError, match=r"frequencies must be finite numbers in rad/s"):
         result.dynamic_stiffness([math.nan])
     assert result.dynamic_stiffness([]).shape == (0, 2, 2)
+
+
+@pytest.mark.parametrize(("volume", "youngs_modulus"), sample([(1e-7, 1e9), (1e-6, 5e9), (1e-5, 1e9)], 1))
+def test_threshold_with_pockets_on_a_liner_is_the_same_with_the_line_in_its_cells(volume, youngs_modulus):
+    """Frequencies far above the pockets' rates, at which nothing vibrates, tell no threshold."""
+    orifice = ehd.Orifice(diameter=7e-4, supply_pressure=1e6, compressible_volume=volume, bulk_modulus=1e9)
+    pockets = tuple(ehd.Pocket(angle=a, width_angle=0.8, length=0.012, supply=orifice) for a in (5.5, 2.4))
+    liner = ehd.ElasticLiner(thickness=1e-3, youngs_modulus=youngs_modulus)
+    found = [
+        at_load(
+            bearing(ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=line), (48, 6), bush=liner, supply=pockets), 0.3
+        )
+        for line in (False, True)
+    ]
+    # errors of the coarse grid with the line on its vertices
+    assert found[0].critical_mass == pytest.approx(found[1].critical_mass, rel=0.1)
+    assert found[0].whirl_ratio == pytest.approx(found[1].whirl_ratio, rel=0.05)
+    assert found[0].whirl_ratio < 1.0
