@@ -44,8 +44,9 @@ to 2.5 for 125 of 137 errors.
 
 Omitted are: the first two steps, in which the rates still jump from the given initial values to those of the films;
 pulses within a step without `StepControl`, which no accepted state shows; oscillations that the trapezoidal rule does
-not damp; constraints, in M; and errors of the films' memory (cavities, heat, wear), which are of first order. With
-`ElrodAdams` the estimate is some 0.4 to 0.9 of the error.
+not damp; constraints, in M; and errors of the films' memory (cavities, heat, wear, compressible volumes of restrictors
+whose pressures settle over many steps), which are of first order. With `ElrodAdams` the estimate is some 0.4 to 0.9 of
+the error.
 """
 
 from __future__ import annotations
@@ -133,11 +134,9 @@ JUMP = 0.9
 SUDDEN = 0.3
 # Error of a step over its allowed error, above which the step is repeated. Larger: fewer repeated steps, larger errors.
 REFUSED = 8.0
-# Allowed error of a step, as a share of the error that is left; this counts as at least the same share of the largest
-# error. Larger: larger steps.
+# Allowed error of a step over the error that is left, and least error left over the largest one. Larger: larger steps.
 BUDGET = 0.1
-# Error that the recommended number of steps aims at. It is less than half of the error that is reported as too large,
-# because the error of the first steps is unknown.
+# Error aimed at by the recommended number of steps: below half the reported limit, as that of first steps is unknown.
 GOAL = 0.02
 
 

@@ -1,7 +1,7 @@
 """Frames of the nodes of rigid bodies: pose, rates and exact variations, as array kernels.
 
-Every side (housing H, journal J) is described by two work arrays, whoever fills them (the kernels here for the nodes
-of rigid bodies, `film_element.MarkerSide` for any other marker):
+Every side (housing H, journal J) is described by two work arrays. The kernels here fill them for the nodes of rigid
+bodies, `exudyn_ehd.coupling.kinematics.sides.MarkerSide` for any other marker:
 
 frame (3, 6)      columns 0-2: A, marker frame to global; 3: position p; 4: velocity v; 5: angular velocity omega;
                   all global
@@ -12,7 +12,7 @@ change (6, n, n)  derivatives of J = [Jp, Jr] to q: contracted with q_t they are
 
 Legend: q, q_t coordinates (without reference values) and their rates; n their number; rho joint point in the node's
 frame [m]; a_loc marker frame to node frame; s = A_node rho the global lever arm; T, F, M global torque, force, moment.
-What follows for the joint: `joint_kinematics`.
+The motion of the joint follows from both sides: `exudyn_ehd.coupling.kinematics.relative`.
 
 Lie group nodes: q_t holds the local angular velocity, and dq the local incremental rotation, as in Exudyn's Newton.
 Euler parameters: the node's rotation is that of e / |e|, so that an iterate off the unit sphere is a pure rotation;

@@ -124,10 +124,10 @@ class StartGuess:
         self.accepted = self.latest = np.zeros(1)
 
     def begin(self, own: _UserFunction, mbs: exu.MainSystem, t: float, iteration: int, discontinuous: int) -> None:
-        """User function before a residual; the user's own is called behind it."""
+        """User function before a residual; the user's own is called after it."""
         solver = mbs.sys["dynamicSolver"]
         if iteration > 0:
-            # to shorten a step films leave the state that they were evaluated at
+            # before a step is shortened, since that moves the films away from their last evaluation
             self.tolerance.limit(solver, iteration)
             self.limit.shorten(mbs, self.additive)
         else:
@@ -320,7 +320,7 @@ class GapLimit:
             old[:] = new
 
     def _allowed_at_end(self, film: FilmElement, last: Trial, after: np.ndarray) -> float:
-        """Part of a step, from before the end of a pressure law, that goes half of the way to the last motion beyond."""
+        """Part of a step, from before a pressure law's end, that goes half of the way to the last motion beyond."""
         bearing = film.model.bearing
         if last.status == Status.NO_PRESSURE and bearing.yielding is None:
             self.behind[film] = last.bodies

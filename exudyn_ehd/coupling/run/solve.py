@@ -45,10 +45,10 @@ def register_joint(mbs: exu.MainSystem, make: Callable[[exu.MainSystem], Joint])
 
 
 def joints_of(mbs: exu.MainSystem) -> list[Joint]:
-    """The lubricated joints of a system, in the order in which they were created; none of before ``mbs.Reset()``."""
+    """Lubricated joints of a system in the order of their creation, without those from before ``mbs.Reset()``."""
     known = mbs.variables.get(JOINTS, [])
     joints = [make(mbs) for make in known]
-    # Exudyn's Reset leaves variables as they are
+    # Exudyn's Reset does not change variables
     present = [joint.element.presence.found(mbs) is not None for joint in joints]
     if not all(present):
         mbs.variables[JOINTS] = [make for make, there in zip(known, present, strict=True) if there]

@@ -158,7 +158,7 @@ class StepSize:
         self.used: float | None = None
 
     def look(self, own: Any, mbs: exu.MainSystem, time: float) -> list[float]:
-        """User function after Newton's method, which first calls the user's own: return error and recommended step size."""
+        """User function after Newton's method and the user's own: return the error and a recommended step size."""
         error, wanted = own(mbs, time)
         known = [used for joint in self.joints if (used := joint.used(mbs, time)) is not None]
         self.used = max(known, default=None)

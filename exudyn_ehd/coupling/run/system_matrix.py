@@ -257,7 +257,7 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
 
 
 def _differences(mbs: exu.MainSystem, item: Index, places: np.ndarray, fK: float, fD: float) -> np.ndarray:
-    """fK K + fD D (n, n) of an object whose forces Exudyn differentiates by differences too, in its own steps."""
+    """fK K + fD D (n, n) of an object by differences of its forces, with the steps that Exudyn uses."""
     kind, data = exu.ComputeItemType.ODE2LHS, mbs.systemData
     out = np.zeros((len(places), len(places)))
     for factor, read, write in (
@@ -268,7 +268,7 @@ def _differences(mbs: exu.MainSystem, item: Index, places: np.ndarray, fK: float
             continue
         state = np.array(read())
         still = np.array(mbs.ComputeItem(item, kind))
-        # a coordinate that an object has twice moves once
+        # a coordinate that an object lists twice is moved once
         for column, place in zip(*np.unique(places, return_index=True)[::-1], strict=True):
             moved = state.copy()
             step = _STEPS.relativeEpsilon * (_STEPS.minimumCoordinateSize + abs(state[place]))

@@ -2,7 +2,7 @@
 
 Module map
 ----------
-options     what a scene names: LumpedThermal, FilmEnergy, Conduction; rings of a wall
-energy      energy equation on the film's grid; heat through the film's surfaces; viscosity of its temperatures
+options     options of a bearing: LumpedThermal, FilmEnergy, Conduction; finite volumes of a wall
+energy      energy equation on the film's grid; heat through the film's surfaces; viscosity at its temperatures
 across      two temperatures across the film, and their viscosity
 """

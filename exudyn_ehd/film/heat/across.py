@@ -4,22 +4,24 @@ Over the height zeta, 0 at the bush and 1 at the journal, with Legendre's polyno
 
     T = s + a P_1 + ((T_j + T_b)/2 - s) P_2 + ((T_j - T_b)/2 - a) P_3,
 
-s the mean, a the tilt, T_b and T_j the surfaces' temperatures, which follow from what the surfaces let through:
-``q_b = k/h (6 s - 10 a - 9 T_b + 3 T_j)``, ``q_j = k/h (6 s + 10 a - 9 T_j + 3 T_b)``. Between its values at Lobatto's
-four points, the surfaces and 1/2 -+ 1/(2 sqrt 5), the fluidity 1/mu is a cubic (H. G. Elrod and D. E. Brewe, Proc. 13th
-Leeds-Lyon Symposium (1986) 493). With its moments ``J_r = int zeta^r / mu``, which Lobatto's rule sums exactly, a film
-carries (D. Dowson, Int. J. Mech. Sci. 4 (1962) 159)
+with the mean s, the tilt a, and the temperatures T_b and T_j of the surfaces. T_b and T_j follow from the heat flow
+through the surfaces, ``q_b = k/h (6 s - 10 a - 9 T_b + 3 T_j)`` and ``q_j = k/h (6 s + 10 a - 9 T_j + 3 T_b)``. The
+fluidity 1/mu is the cubic through its values at Lobatto's four points, which are the surfaces and 1/2 -+ 1/(2 sqrt 5)
+(H. G. Elrod and D. E. Brewe, Proc. 13th Leeds-Lyon Symposium (1986) 493). Lobatto's rule gives its moments
+``J_r = int zeta^r / mu`` exactly. With them the flow and the shear stress are (D. Dowson, Int. J. Mech. Sci. 4 (1962)
+159)
 
     q = U h (1 - J_1/J_0) - h^3 (J_2 - J_1^2/J_0) dp/dx,        tau = U / (h J_0) + h (zeta - J_1/J_0) dp/dx.
 
-The energy equation is taken in the mean and weighted with P_1: every link carries each height's flow with the
-temperature upstream of that height, of second order in z as in `exudyn_ehd.film.heat.energy`; continuity takes oil
-across the film as well. What leaves at the ends does so as pressure drives it, what a cavitation model finds or loses
-as sliding carries it.
+There are two energy equations for a control volume: the mean over the height, and the one weighted with P_1. On a link
+the flow at every height transports the temperature upstream at that height; in z this is of second order, as in
+`exudyn_ehd.film.heat.energy`. Oil also flows across the film, as continuity demands. Oil that leaves at the ends has
+the profile of pressure flow. Oil that a cavitation model adds or loses has the profile of Couette flow.
 
-Scaled as in `exudyn_ehd.film.heat.energy`. What is linear in the temperatures has a last axis of four: s, a, and the
-temperatures w_b, w_j outside the surfaces; rows of two are heat and tilt, heat weighted with P_1. Fluidities (n, m, 4)
-are over the reference, at Lobatto's points.
+Scaled as in `exudyn_ehd.film.heat.energy`. Quantities that are linear in the temperatures have a last axis of four
+coefficients: of s, of a, and of the temperatures w_b and w_j outside the surfaces. An axis of two holds the heat and
+its tilt, which is the heat weighted with P_1. Fluidities (n, m, 4) are divided by the reference fluidity, and are those
+at Lobatto's points.
 """
 
 from __future__ import annotations
@@ -38,20 +40,20 @@ from exudyn_ehd.film.reynolds.links import LinkFlux, drops, to_ends
 
 LOBATTO = np.array([0.0, 0.5 - 0.5 / math.sqrt(5.0), 0.5 + 0.5 / math.sqrt(5.0), 1.0])
 _MOMENTS = (np.array([1.0, 5.0, 5.0, 1.0]) / 12.0)[:, None] * LOBATTO[:, None] ** np.arange(3)
-# five heights, exact for the degrees of a flow (5), a temperature (3) and a weight (1)
+# five heights: Gauss's rule is then exact for the product of a flow (degree 5), a temperature (3) and a weight (1)
 HEIGHTS, _SHARES = scipy.special.roots_sh_legendre(5)
 _WEIGHTS = np.array([_SHARES, _SHARES * (2.0 * HEIGHTS - 1.0)])
 
 
 def _of_points(moment: int, times: int) -> np.ndarray:
-    """zeta^moment times each point's polynomial, integrated so often from the bush, at the heights (4, 5)."""
+    """zeta^moment times Lagrange's polynomial of each point, integrated ``times`` times from the bush: (4, 5)."""
     polynomials = (Polynomial.fromroots(np.delete(LOBATTO, k)) for k in range(4))
     weighted = (p * Polynomial.basis(moment) / p(at) for p, at in zip(polynomials, LOBATTO, strict=True))
     return np.array([p.integ(times)(HEIGHTS) for p in weighted])
 
 
 def _cubic(at: np.ndarray) -> np.ndarray:
-    """Temperatures at heights (k,) per s, a, T_b and T_j (k, 4)."""
+    """Coefficients (k, 4) of s, a, T_b and T_j in the temperatures at heights (k,)."""
     x = 2.0 * at - 1.0
     p2, p3 = 0.5 * (3.0 * x**2 - 1.0), 0.5 * (5.0 * x**3 - 3.0 * x)
     return np.column_stack((1.0 - p2, x - p3, 0.5 * (p2 - p3), 0.5 * (p2 + p3)))
@@ -85,13 +87,13 @@ class FluidityField(ViscosityField):
     Attributes
     ----------
     vertices, along, across : (n, m, 4) arrays
-        1 over the viscosity's ratio at Lobatto's points: at vertices, on links in theta and z.
+        1 over the viscosity ratio at Lobatto's points: at the vertices, on links in theta, and on links in z.
     """
 
     changes_carriers = True
 
     def set(self, ratio: np.ndarray) -> None:
-        """Take over the ratio at the vertices at Lobatto's points (n, m, 4); links take the mean of their vertices."""
+        """Set the viscosity ratio at Lobatto's points of the vertices (n, m, 4); a link has its vertices' mean."""
         self.vertices = 1.0 / ratio
         self.along, self.across = on_links(self.vertices)
         self.inverse_x, self.carried_x, _ = flow_factors(self.along)
@@ -107,7 +109,7 @@ class FluidityField(ViscosityField):
 
 
 class Shapes(NamedTuple):
-    """Flows at the heights per mean flow, of sliding and of pressure, and what of them is below; (n, m, 5) each."""
+    """Flows of sliding and of pressure at the heights and below them, over the mean flow; (n, m, 5) each."""
 
     slides: np.ndarray
     pressed: np.ndarray
@@ -116,7 +118,7 @@ class Shapes(NamedTuple):
 
 
 def flow_shapes(fluid: np.ndarray) -> Shapes:
-    """Shapes of the flows with these fluidities."""
+    """Shapes of the flows for the fluidities (n, m, 4)."""
     J0, J1, J2 = np.moveaxis(fluid @ _MOMENTS, -1, 0)[..., None]
     F0, F1, B0, B1 = ((fluid.reshape(-1, 4) @ of).reshape(*fluid.shape[:2], 5) for of in _FLOWS)
     centre = J1 / J0
@@ -125,7 +127,7 @@ def flow_shapes(fluid: np.ndarray) -> Shapes:
 
 
 def heat_tilts(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Tilt of the heat of sliding and of pressure flow per heat, and of both stresses together, (n, m) each."""
+    """Tilt of the heat, (n, m) each: of sliding and of pressure flow over their heat, and of their mixed product."""
     J0, J1, _ = np.moveaxis(fluid @ _MOMENTS, -1, 0)
     heat, tilt = ((fluid @ _FLUID) * w for w in _WEIGHTS)
     arm = HEIGHTS - (J1 / J0)[..., None]
@@ -135,8 +137,10 @@ def heat_tilts(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def crossed_tilt(
     P: np.ndarray, H: np.ndarray, both: np.ndarray, speeds: tuple[float, float], mesh: tuple[np.ndarray, ...]
 ) -> np.ndarray:
-    """Tilt of the heat (n, m) that the stresses of sliding and of pressure flow make together; ``both`` of
-    `heat_tilts`, scaled speeds along theta and z."""
+    """Tilt of the heat (n, m) from the mixed product of the stresses of sliding and of pressure flow.
+
+    ``both``: last array of `heat_tilts`; ``speeds``: scaled, along theta and z.
+    """
     width_x, width_z, link_x, _ = mesh
     x, z = -drops(P)
     along, across = speeds[0] * np.outer(link_x != 0.0, width_z) * x, speeds[1] * width_x[:, None] * z
@@ -146,7 +150,7 @@ def crossed_tilt(
 def surfaces(
     kappa: np.ndarray, area: np.ndarray, outward: tuple[float | None, float | None]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Temperatures of both surfaces, heat into them, W, and what conduction takes off heat and tilt, W.
+    """Temperatures of both surfaces, heat into them, W, and the losses of heat and tilt by conduction, W.
 
     Arguments as for `exudyn_ehd.film.heat.energy.passed`; (2, n, m, 4) each.
     """
@@ -157,41 +161,42 @@ def surfaces(
 
 
 def at_heights(surface: np.ndarray) -> np.ndarray:
-    """Temperatures (n, m, 5, 4) at the heights, with those of both surfaces (2, n, m, 4)."""
+    """Temperatures (n, m, 5, 4) at the heights, from those of both surfaces (2, n, m, 4)."""
     out = np.einsum("gk,kijc->ijgc", _CUBIC[:, 2:], surface)
     out[..., :2] += _CUBIC[:, :2]
     return out
 
 
 def weighed(flow: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Heat and tilt (2, n, m, 4) of what the heights carry (n, m, 5) with temperatures as `at_heights`."""
+    """Heat and tilt (2, n, m, 4) of flows at the heights (n, m, 5) with temperatures ``at`` of `at_heights`."""
     return np.asarray(np.einsum("rijg,ijgc->rijc", _WEIGHTS[:, None, None] * flow, at))
 
 
 def start_heights(fields: np.ndarray) -> np.ndarray:
-    """Temperatures (n, 5, m) at the heights of mean, tilt and both surfaces (4, n, m)."""
+    """Temperatures (n, 5, m) at the heights, from mean, tilt and both surfaces (4, n, m)."""
     return np.ascontiguousarray(np.einsum("gc,cij->igj", _CUBIC, fields))
 
 
 @njit(cache=True, fastmath=FAST)
 def carry(axis, driven, sliding, shapes, at, limiter, ends_out, below_out, content_out):
-    """Add what the links in theta (axis 0) or z (1) carry.
+    """Add the heat, its tilt and the oil that flow over the links in theta (axis 0) or z (1).
 
     Parameters
     ----------
     driven, sliding : (n, m) arrays
         Flows by pressure and by sliding.
     shapes : Shapes
-        On the links.
+        Of the flows on the links.
     at : (n, m, 5, 4) array
         See `at_heights`.
     limiter : three arrays
-        `start_heights`, and ``link_z`` and ``held`` of `exudyn_ehd.film.heat.energy.transport_slopes`, which does in z
-        what is done here at every height.
+        `start_heights`, and ``link_z`` and ``held`` as in `exudyn_ehd.film.heat.energy.transport_slopes`. Here the
+        limiter of that function acts at every height.
     ends_out : (2, 2, n, m, 4) array
-        Heat and tilt that leave by the link, by its own and by the next vertex.
+        Coefficients of the heat and tilt that leave over the link: of the temperatures at its first vertex, and at its
+        second one.
     below_out, content_out : (n, m, 5), (n, m) arrays
-        What enters in all below the heights, and at all.
+        Inflow of oil into a vertex below the heights, and over the whole height.
     """
     slides, pressed, slides_below, pressed_below = shapes
     T, link_z, held = limiter
@@ -219,10 +224,10 @@ def carry(axis, driven, sliding, shapes, at, limiter, ends_out, below_out, conte
 
 @njit(cache=True)
 def band_of_pairs(ends, own, number, lower, upper):
-    """Bands, as of `exudyn_ehd.film.banded.factors`, of the pairs (s, a) at the numbered vertices (n, m).
+    """Fill the bands, as in `exudyn_ehd.film.banded.factors`, for the pairs (s, a) at the numbered vertices (n, m).
 
-    ``own`` (2, n, m, 4), and what the links carry away in theta and z by their own and by the next vertex, ``ends``
-    (2, 2, 2, n, m, 4).
+    ``own`` (2, n, m, 4): coefficients of a vertex without its links; ``ends`` (2, 2, 2, n, m, 4): ``ends_out`` of
+    `carry` for the links in theta and in z.
     """
     n, m = number.shape
     lower[:] = 0.0

@@ -1,34 +1,36 @@
 """Film-averaged energy equation on the film grid: heat sources, flows, and the system of the temperatures.
 
-The temperatures act on the film by its viscosity, `ViscosityField`.
+The temperatures act on the film through its viscosity, `ViscosityField`.
 
-Scaled: flows in units of c R^2 (1/s), heat in kelvin per second of such a flow, that is divided by rho c_p c R^2. The
-content m = fill H of a control volume changes by its flows and by what enters from outside, ``S = out - in + A dm/dt``
-(ends, supplies, and the oil that a cavitation model which does not conserve mass finds or loses). Energy minus T times
-mass:
+Scaling: flows are divided by c R^2 (1/s), heat by rho c_p c R^2 (K/s). The content m = fill H of a control volume
+changes by its flows and by the inflow from outside, ``S = out - in + A dm/dt``. This inflow comes from the ends, from
+supplies, and from a cavitation model that does not conserve mass and so adds or loses oil. The balance of energy minus
+T times the balance of mass is
 
     A m* (T - T_old)/dt + sum over inflows F (T - T_link) + sum over outflows F (T_link - T)
         + S+ (T - T_source) + A walls (T - T_wall) = heat,
 
 m* = m' + (dt / 2) dh/dt with m' = m - dt dm/dt. The rate dm/dt comes from the gap's rate, so that m' is not the content
-m_old of the step before but ``m_old - (dt^2 / 2) d2h/dt2``. With m* the storage of a step is
+m_old of the previous step but ``m_old - (dt^2 / 2) d2h/dt2``. With m* the storage of a step is
 
     m* (T - T_old) + dt T dm/dt = m T - m_old T_old + (dt^2 / 2) d(T dh/dt)/dt,
 
-which adds up to nothing over a settled cycle. With m' or m in place of m* up to 2 % of the loss would remain, in 64
-steps a turn.
+whose sum over a periodic cycle is zero. With m' or m in place of m* an error of up to 2 % of the power loss would
+remain, for 64 steps a turn.
 
-In theta T_link is the temperature upstream. In z, where oil that turns with the journal borders on oil that the ends
-suck in, that would leak as much heat to the sides as the bearing gives off: there it is of second order, by a limiter
-that makes no extrema. What a link carries leaves one side and reaches the other, so that the balance holds.
+In theta T_link is the temperature upstream, which is of first order. In z that would be too inaccurate: hot oil that
+turns with the journal is next to cold oil that enters at the ends, and the error would be as large as the heat that the
+bearing gives off. So T_link is of second order in z, with a limiter that makes no extrema. The heat that leaves one
+vertex over a link enters the other one, so that the heat balance holds.
 
 Heat from a film's mean temperature through both of its surfaces
 ----------------------------------------------------------------
-Across the film lies a parabola with the mean T and the surfaces' s_1, s_2. It passes
+The temperature across the film is a parabola with the mean T and the surface temperatures s_1, s_2. Its heat flows into
+the surfaces are
 
     q_1 = kappa (6 T - 4 s_1 - 2 s_2),    q_2 = kappa (6 T - 4 s_2 - 2 s_1),    kappa = k / h,
 
-as from T(y) = s_1 + b y + d y^2 with its mean T, q_1 = k T'(0) and q_2 = -k T'(h). Uniform heating makes this profile.
+from T(y) = s_1 + b y + d y^2 with the mean T, q_1 = k T'(0) and q_2 = -k T'(h). Uniform heating gives this profile.
 
 Symbols: P true and q transformed scaled pressure, kx / kz conductances and fx / fz Couette fluxes with their metric, A
 areas.
@@ -53,7 +55,7 @@ class ViscosityField(FluxEffect):
         self.inverse_x = self.inverse_z = self.ratio
 
     def set(self, ratio: np.ndarray) -> None:
-        """Take over the ratio at the vertices (n, m); links take the mean of their vertices."""
+        """Set the viscosity ratio at the vertices (n, m); a link has the mean of its vertices."""
         self.ratio = ratio
         self.inverse_x = 2.0 / (ratio + np.roll(ratio, -1, axis=0))
         self.inverse_z = 1.0 / ratio
@@ -75,41 +77,42 @@ class ViscosityField(FluxEffect):
 
 
 def film_heat(P: np.ndarray, q: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """Heat (n, m) of the pressure flow, half of it at either vertex of a link; k (2, n, m): conductances."""
+    """Heat (n, m) of the pressure flow, half of a link's heat at each of its vertices; k (2, n, m): conductances."""
     x, z = k * drops(q) * drops(P)
     return to_ends(x, 0) + to_ends(z, 1)
 
 
 def film_flows(q: np.ndarray, fill: np.ndarray, k: np.ndarray, f: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Flows (2, n, m) over the links, and what leaves every vertex by them, (n, m); k, f (2, n, m)."""
+    """Flows (2, n, m) over the links, and the net outflow (n, m) of every vertex; k, f (2, n, m)."""
     flows = k * drops(q) + f * np.where(f >= 0.0, fill, following(fill))
     return flows, drop_weights(flows).sum(axis=0)
 
 
 @njit(cache=True)
 def end_flows_around(turned, pressed, stored, squeezed, full, flow_out, entering_out):
-    """Flows along an end's half control volumes, whose film conserves mass, and what enters them from outside, (n,).
+    """Flows along an end's half control volumes and their inflow from outside, (n,), in a film that conserves mass.
 
-    A half control volume beside a cavity carries what arrives along theta and what the film presses out to it, up to a
-    full film; the excess leaves. From outside it takes only what an end pressure above the cavity's can drive: with
-    the link's flow q and the divergence B of a full film as in `exudyn_ehd.film.loads.end_flows`, up to ``q + B``
-    beside a full film or for ``q >= B``, up to ``2 sqrt(q B)`` for a smaller q, nothing for q <= 0.
+    A half control volume next to a cavity receives oil along theta and oil that the film presses out. It passes this
+    oil on along theta up to the flow of a full film; the excess leaves the bearing. Its inflow from outside is limited
+    to the flow that an end pressure above the cavity pressure can drive. With the link's flow q and the divergence B of
+    a full film, as in `exudyn_ehd.film.loads.end_flows`, the limit is ``q + B`` next to a full film or for ``q >= B``,
+    ``2 sqrt(q B)`` for a smaller q, and zero for q <= 0.
 
     Parameters
     ----------
     turned : (n,) array
         Couette flow of a full film over the links i -> i+1, of one sign.
     pressed : (n,) array
-        Flow from the end's vertices to those beside them.
+        Flow from the end's vertices to their neighbours inside.
     stored, squeezed : (n,) arrays
-        Rates of the content, of the half control volumes and of full ones.
+        Rates of the content: of the half control volumes, and of full half control volumes.
     full : (n,) bool array
-        Where the end has more than the cavity's pressure beside a full film.
+        Where the end pressure is above the cavity pressure and the film next to it is full.
     """
     n, way = turned.size, 1 if turned.sum() >= 0.0 else -1
     start = np.argmin(pressed)
     carried = abs(turned[start - 1 if way > 0 else start])
-    # the second turn begins with what the first one has brought
+    # the second turn begins with the flow at the end of the first one
     for k in range(2 * n):
         i = (start + way * k) % n
         out, into = (i, i - 1) if way > 0 else (i - 1, i)
@@ -132,16 +135,16 @@ def end_flows_around(turned, pressed, stored, squeezed, full, flow_out, entering
 def content_rate(
     H: np.ndarray, H_t: np.ndarray, fill: np.ndarray, mass_old: np.ndarray, inverse_step: float, squeeze: bool
 ) -> np.ndarray:
-    """Rate of the content fill H: by the old content if ``inverse_step`` > 0, else by the gap's rate if ``squeeze``."""
+    """Rate of the content fill H: from the old content if ``inverse_step`` > 0, else from H_t if ``squeeze``, or 0."""
     if inverse_step > 0.0:
         return (fill * H - mass_old) * inverse_step
     return fill * H_t if squeeze else np.zeros_like(H)
 
 
 def outside_flows(qz: np.ndarray, balance: np.ndarray, fixed: np.ndarray, unbroken: np.ndarray) -> np.ndarray:
-    """Inflow at fixed vertices (n, m): their balance, or beside a ruptured film only the flow over the end's link.
+    """Inflow at fixed vertices (n, m): their balance, or next to a ruptured film only the flow over the end's link.
 
-    ``qz`` and ``balance`` (n, m): over the links in z, and what leaves or is stored, as of `film_flows`. ``unbroken``
+    ``qz`` (n, m): flows over the links in z; ``balance`` (n, m): outflow of `film_flows` plus storage. ``unbroken``
     (n, m) is all True for cavitation models that conserve mass.
     """
     out = np.where(fixed, balance, 0.0)
@@ -153,16 +156,16 @@ def outside_flows(qz: np.ndarray, balance: np.ndarray, fixed: np.ndarray, unbrok
 
 @njit(cache=True)
 def transport_slopes(qx, qz, diagonal, T, link_z, held, slopes_out):
-    """Derivatives (5, n m) as `exudyn_ehd.film.banded.assemble` takes them, of the energy equation's system.
+    """Derivatives (5, n m) of the energy equation's system, in the layout of `exudyn_ehd.film.banded.assemble`.
 
-    The heat over a link is its flow times the temperature upstream and, in z, a share of the difference to the one
-    downstream. Of the flows out of a vertex less those into it, times its own temperature, the energy less T times the
-    mass is free: they are taken off ``diagonal`` (n, m), which holds everything but the inflows from neighbours. ``qz``
-    is zero at the end, where there is no link.
+    The heat over a link is its flow times the temperature upstream plus, in z, a share of the difference to the
+    temperature downstream. T times the balance of mass is subtracted from the balance of energy: the net outflow of a
+    vertex is therefore subtracted from ``diagonal`` (n, m), which holds all other terms of its own temperature. ``qz``
+    is zero in the last column, where there is no link.
 
-    The shares are a limiter's at the temperatures ``T`` (n, m), those at the start of a step. With any up to a half the
-    system's fields do not grow. Of flows that renew more than what a step has ``held`` (n, m) upstream, its storage
-    term, only that much counts: in longer steps shares and temperatures would throw each other to and fro.
+    A limiter gives the shares from the temperatures ``T`` (n, m) at the start of a step. With shares up to a half the
+    solution does not grow. The storage term ``held`` (n, m) upstream limits the flow that a share multiplies. Without
+    this limit shares and temperatures would alternate from step to step if the steps are long.
     """
     n, m = qx.shape
     for i in range(n):
@@ -181,8 +184,9 @@ def transport_slopes(qx, qz, diagonal, T, link_z, held, slopes_out):
 def downstream_weight(T, link_z, j, flow):
     """Weight of the temperature downstream on the link j -> j+1.
 
-    By the ratio r of the slopes upstream of the link and on it: a half for r >= 1, ``2 r / (1 + r)^2`` below, which
-    meets it smoothly, and none at extrema and behind the ends.
+    With the ratio r of the slope upstream of the link to the slope on it, the weight is a half for r >= 1 and
+    ``2 r / (1 + r)^2`` for a smaller r, with a continuous slope at r = 1. It is zero at extrema and if the link
+    upstream would lie outside the film.
     """
     up = j - 1 if flow > 0.0 else j + 1
     weight = 0.0
@@ -203,16 +207,16 @@ def passed(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Temperatures of both surfaces, and heat into them, W, (2, f, n, m) each.
 
-    They are linear in f temperatures, of which the last two lie outside both surfaces. Into surface a the film passes
-    ``q_a = kappa (inside[a] . temperatures - own s_a - other s_b)``; a surface with a coefficient has
-    ``q_a = U (s_a - T_a)``, one of a wall that conducts by itself ``s_a = T_a``.
+    They are linear in f temperatures, of which the last two are those outside both surfaces. The heat flow from the
+    film into surface a is ``q_a = kappa (inside[a] . temperatures - own s_a - other s_b)``. For a surface with a heat
+    transfer coefficient ``q_a = U (s_a - T_a)``, for the surface of a wall with conduction ``s_a = T_a``.
 
     Parameters
     ----------
     kappa, area : (n, m) arrays
-        k / h, W/(m2 K), and m2 of the vertices.
+        k / h, W/(m2 K), and areas of the vertices, m2.
     outward : (float or None, float or None)
-        U of both sides, W/(m2 K); None: the surface has the wall's temperature.
+        U of both surfaces, W/(m2 K); None: the surface has the wall's temperature.
     inside : (2, f) array
         Zero for the temperatures outside.
     own, other : float
@@ -232,7 +236,7 @@ def passed(
 def through_surfaces(
     kappa: np.ndarray | None, area: np.ndarray, outward: tuple[float | None, float | None]
 ) -> np.ndarray:
-    """Heat into both surfaces (2, n, m, 3), W, per kelvin of a film's mean temperature and of those outside.
+    """Heat into both surfaces (2, n, m, 3), W, per kelvin of the film's mean temperature and of both outside ones.
 
     Parameters as for `passed`; ``kappa`` None: the coefficients act on the mean temperature.
     """

@@ -1,22 +1,23 @@
-"""Thermal effects that a scene names: one film temperature, or a temperature field. Isothermal is None.
+"""Options for thermal effects: one film temperature, or a temperature field. None stands for an isothermal film.
 
 With a lubricant's ``density_law`` (compressible film), flows and contents are masses over the density at ambient
-pressure rho, so that c_p belongs to the mass. What heats the film is the dissipated power ``Phi``: shear, and the mass
+pressure rho, so that c_p belongs to the mass. The dissipated power ``Phi`` heats the film: shear, and the mass
 flow under pressure times the drop of ``integral of dp / (rho(p) / rho)``. Heat of compression ``alpha_T T dp/dt``
 (alpha_T thermal expansion) is left out, in compressible films as in others: it is reversible, oil that passes through a
 pressure p is warmer there by ``alpha_T T p / (rho c_p)``, with 7e-4 1/K and 320 K by 1.3 K per 10 MPa, and cools down
-as it leaves. Nor does the density follow the temperature.
+as it leaves. The density does not depend on the temperature.
 
 Heat in the wall of a bush or of a journal: rings of finite volumes, a column for each of the film's
 ----------------------------------------------------------------------------------------------------
     rho c dT/dt = k (1/r d/dr (r dT/dr) + 1/r^2 d2T/dtheta2) - loss
 
-Vertices lie evenly from the film's surface to the far one, with half a ring at either. The conductance between two of
-them is that of the logarithmic profile, k times angle and length over ln(r2 / r1), so that what flows steadily and the
-same all around is exact; the rest is of second order in radius and angle. Backward Euler in time, first order.
+The vertices are equidistant from the film's surface to the far surface, with half a ring at each surface. The
+conductance between two vertices is that of the logarithmic profile, k times angle and length over ln(r2 / r1). So a
+steady heat flow that does not depend on the angle is exact; other heat flows are of second order in radius and angle.
+Backward Euler in time, first order.
 
-Around the axis the system is the same at every angle, so that its Fourier coefficients are independent: each is a
-small system along the radius, condensed onto the film's surface.
+The system is the same at every angle, so that its Fourier coefficients around the axis are independent. Each of them is
+a small system along the radius, which is condensed onto the film's surface.
 """
 
 from __future__ import annotations
@@ -50,8 +51,8 @@ class Sump(Checked):
 
     In joints: backward Euler over the accepted steps, together with the film's temperature; histories have
     ``sump_temperature``. Steady films (`steady`, `equilibrium`, `stribeck`) have a steady sump. A tank takes minutes to
-    hours to warm up: for shorter runs give ``initial_temperature``. Other temperatures that are None are that of the
-    ambient. `FilmEnergy` takes up to four times as long.
+    hours to warm up: for shorter runs give ``initial_temperature``. Temperatures of the thermal option that default to
+    the supply temperature default to ``ambient`` with a sump. `FilmEnergy` takes up to four times as long with a sump.
 
     Parameters
     ----------
@@ -372,21 +373,21 @@ class FilmEnergy(Checked):
 
 @dataclass(frozen=True, eq=False)
 class Walls:
-    """Temperatures of a bearing's walls, K, and what they make of the clearance.
+    """Temperatures of a bearing's walls, K, and the clearance with the walls' thermal growth.
 
     Attributes
     ----------
     bush : (n, k) array or None
-        At every angle of the film, from the bore outward; None for a bush that does not conduct.
+        Temperatures at every angle of the film, from the bore outward; None for a bush without `Conduction`.
     journal : (k,) array or None
-        From the surface inward; None for a journal that does not conduct.
+        Temperatures from the surface inward; None for a journal without `Conduction`.
     bush_radii, journal_radii : (k,) arrays or None
-        Where, m.
+        Radii of these temperatures, m.
     clearance : float
-        Radial, with what the walls have grown by, m.
+        Radial clearance with the growth of the walls, m.
     across : (3, n, m) array or None
-        Of a film with two temperatures across it: the tilt, half of what its straight part rises by from bush to
-        journal, and the surfaces' temperatures, bush and journal, K.
+        For a film with ``across=2``: the tilt, which is half of the rise of the profile's linear part from bush to
+        journal, and the temperatures of the surfaces of bush and journal, K.
     """
 
     bush: np.ndarray | None
@@ -397,16 +398,16 @@ class Walls:
     across: np.ndarray | None = None
 
     def across_film(self, temperature: float | np.ndarray) -> np.ndarray:
-        """Temperatures of a film of these walls, K: its own (n, m), or (n, m, 4) at Lobatto's points across it."""
+        """Temperatures of a film with these walls, K: its mean (n, m), or (n, m, 4) at Lobatto's points across it."""
         if self.across is None:
             return np.asarray(temperature)
-        # imported here: other films have no profile across them
+        # imported here, since only films with a profile across them need it
         from exudyn_ehd.film.heat.across import at_points
 
         return at_points(np.array([temperature, *self.across]))
 
     def numbers(self, area: np.ndarray) -> dict[str, float]:
-        """Mean temperatures at the film, whose vertices have areas (n, m), K, of walls that conduct; clearance, m."""
+        """Mean surface temperatures, K, of walls with `Conduction`, and clearance, m; areas (n, m) of the vertices."""
         out = {"clearance": self.clearance}
         if self.across is not None:
             means = np.tensordot(self.across[1:], area / area.sum(), 2)
@@ -418,7 +419,7 @@ class Walls:
         return out
 
     def at(self, bush: float, journal: float) -> Walls:
-        """Walls of these temperatures throughout, K."""
+        """Walls with one temperature each, that of bush and journal, K."""
         own, turning = (
             None if T is None else np.full_like(T, value) for T, value in ((self.bush, bush), (self.journal, journal))
         )
@@ -428,7 +429,7 @@ class Walls:
         return replace(self, bush=own, journal=turning, across=across)
 
     def behind(self, temperature: float | np.ndarray) -> np.ndarray:
-        """The film's temperatures (n, m) with those of the walls behind them, as a film remembers them."""
+        """The film's temperatures (n, m) followed by those of the walls, as a film's history stores them."""
         T = [np.asarray(temperature)]
         T += [] if self.across is None else [T[0] + self.across[0], *self.across[1:]]
         T += [] if self.bush is None else [self.bush]
@@ -438,26 +439,26 @@ class Walls:
 
 
 class Rings:
-    """One wall on the columns of a film; temperatures are rises over the ambient, K.
+    """Finite volumes of one wall on the columns of a film; temperatures are rises over the ambient, K.
 
     Parameters
     ----------
     wall : Conduction
     radius, length : float
-        Of the film's surface, m.
+        Radius and length of the film's surface, m.
     columns : int
-        Around the axis; 1: a wall that turns fast against the heat, with the same temperature at every angle.
+        Number around the axis; 1: a wall that turns so fast that its temperature is the same at every angle.
     inward : bool
-        Whether it is a journal, which gives its heat off all over its section; a bush does so at its far surface.
+        True: a journal, whose heat loss is spread over its section. False: a bush, whose loss is at its far surface.
 
     Attributes
     ----------
     radii : (k,) array
-        Of the vertices, from the film's surface on, m.
+        Radii of the vertices, beginning at the film's surface, m.
     share : (k,) array
-        Of each ring in the section.
+        Share of each ring in the area of the section.
     loss : (k,) array
-        To the ambient, W/K for a column.
+        Heat loss of each ring to the ambient, W/K for a column.
     stiffness : (columns // 2 + 1,) array
         Heat into the surface per kelvin of its temperature, W/K for a column, by Fourier coefficient.
     """
@@ -477,12 +478,12 @@ class Rings:
             self.radial[-1] = 0.5 * wall.conductivity * length * angle
         self.loss = wall.conductance / columns * (self.share if inward else np.eye(r.size)[-1])
         waves = 2.0 - 2.0 * np.cos(angle * np.arange(columns // 2 + 1))
-        # of one column there is nothing to conduct around
+        # with one column there is no conduction around the axis
         self.around = np.outer(waves, around) if columns > 1 else np.zeros((1, r.size))
         self.step = math.nan
 
     def bring_to(self, step: float) -> None:
-        """Condense the system of a step, s; 0: of the steady wall."""
+        """Condense the system of a step, s, onto the film's surface; 0: the system of a steady wall."""
         if step == self.step:
             return
         self.step, self.store = step, self.capacity / step if step > 0.0 else np.zeros_like(self.capacity)
@@ -495,19 +496,19 @@ class Rings:
         self.stiffness = matrix[:, 0, 0] - self.radial[0] ** 2 * self.inner[:, 0, 0]
 
     def matrix(self) -> np.ndarray:
-        """Heat into every column's surface, W, per kelvin of the surface's temperatures (columns, columns)."""
+        """Heat into every column's surface, W, per kelvin of every column's surface temperature (columns, columns)."""
         row = np.fft.irfft(self.stiffness, self.columns) if self.columns > 1 else self.stiffness
         k = np.arange(self.columns)
         return row[(k[:, None] - k) % self.columns]
 
     def remembered(self, old: np.ndarray) -> np.ndarray:
-        """Heat out of the surface (columns,), W, that old temperatures (columns, k) give at a surface of no rise."""
+        """Heat out of the surface (columns,), W, from the old temperatures (columns, k), if the surface has no rise."""
         known = np.fft.rfft(self.store * old, axis=0)
         first = known[:, 0] + self.radial[0] * np.einsum("pk,pk->p", self.inner[:, 0], known[:, 1:])
         return np.fft.irfft(first, self.columns) if self.columns > 1 else first.real
 
     def behind(self, surface: np.ndarray, old: np.ndarray) -> np.ndarray:
-        """Temperatures (columns, k) at the end of the step with those of the surface (columns,)."""
+        """Temperatures (columns, k) at the end of the step, from those of the surface (columns,) and the old ones."""
         known = np.fft.rfft(self.store * old, axis=0)
         known[:, 1] += self.radial[0] * np.fft.rfft(surface)
         inner = np.einsum("pij,pj->pi", self.inner, known[:, 1:])

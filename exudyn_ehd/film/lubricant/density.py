@@ -8,14 +8,14 @@ The mass flow under pressure ``rho / mu grad p = grad q / mu_0`` is linear in
 ``q = integral of (rho / rho_0) / (mu / mu_0) dp``, which grows with p, so that conditions on the cavity hold in q as in
 p. Below ambient pressure ``q = (1 - exp(-k p)) / k``, k = alpha - a with the viscosity's coefficient alpha.
 
-Density at the vertices of a film: the iterations of a film, and one film after the other, ask for the law at nearly
-the same pressures again and again. So every vertex remembers a pressure at which the law is known, ``known`` (9, size):
-transformed pressure q, density ratio, s = dp/dq and its derivative, the four further coefficients of the density's
-Taylor polynomial about q, and the change of q up to which that polynomial is the law, in loops that the compiler
-vectorises.
+Density at the vertices of a film. A vertex has nearly the same pressure in successive iterations and films, and looking
+up the law takes time. So ``known`` (9, size) stores the law at one transformed pressure q of every vertex: q, density
+ratio, s = dp/dq and its derivative, and the four further coefficients of the density's Taylor polynomial about q. The
+last entry is the reach, the change of q up to which the polynomial may replace the law. The compiler vectorises the
+loops that evaluate these polynomials.
 
 Symbols: P scaled transformed pressures (n, m), ``scale`` Pa per unit of P, ``floor`` the scaled pressure below which
-the density stays.
+the density is constant.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import (
 from exudyn_ehd.status import POSITIVE, ROUNDING, Checked
 
 COEFFICIENT = partial(POSITIVE, hint="mineral oils have 0.6e-9 (coefficient) and 1.7e-9 (saturation).")
-# Stands for an exponent k = 0, for which q = p: far below what rounding could show.
+# Exponent in place of k = 0, for which q = p; so small that the results agree to rounding.
 SMALLEST_EXPONENT = 1e-30
 
 
@@ -69,10 +69,10 @@ class DowsonHigginson(Checked):
 
     When: peak pressures above some 100 MPa, or fast transients in which the oil itself is a spring.
 
-    Only `ElrodAdams` counts the oil that a place takes in as it gets denser, ``h drho/dt``. Take it for those
-    transients, and where the load turns against the housing, as in planet gears. Under a steady load the law thickens
-    the film by 2 % at a peak pressure of 130 MPa; other models have all of that if the journal spins in a housing at
-    rest, and nothing of it if the housing spins around a journal at rest.
+    Only `ElrodAdams` contains the storage of oil by compression, ``h drho/dt``. Use it for those transients, and where
+    the load turns against the housing, as in planet gears. Under a steady load the law thickens the film by 2 % at a
+    peak pressure of 130 MPa. Other cavitation models give this increase fully if the journal spins in a housing at
+    rest, and not at all if the housing spins around a journal at rest.
 
     Oil is 0.6 % denser at 10 MPa and 5 % at 100 MPa gauge. Reported flows, m3/s, are mass flows over the density at
     ambient pressure.
@@ -144,7 +144,7 @@ class DensityField:
         self.law, self.scale = law, 1.0
         self.rho, self.rho_P = np.ones((2, *shape))
         self.known = np.full((9, self.rho.size), np.nan)
-        # whether Newton's steps may cross the end of the law
+        # whether Newton's steps may go beyond the end of the law
         self.crosses = False
 
     def is_exhausted(self, P: np.ndarray) -> bool:
@@ -152,11 +152,11 @@ class DensityField:
         return bool(P.max() * self.scale >= (1.0 - ROUNDING) * self.law.kernel_table.highest)
 
     def fields(self, floor: float) -> tuple[float, float, LawTable, np.ndarray, bool]:
-        """Law as kernels take it; ``floor``: scaled pressure below which the density stays."""
+        """Arguments of the kernels for this law; ``floor``: scaled pressure below which the density is constant."""
         return self.scale, floor, self.law.kernel_table, self.known, self.crosses
 
     def at(self, pressure: float) -> float:
-        """Density over that at ambient pressure at a scaled transformed pressure, the cavity's."""
+        """Density over that at ambient pressure, at a scaled transformed pressure such as the cavity's."""
         return float(law_at(pressure * self.scale, self.law.kernel_table)[1])
 
 
@@ -190,14 +190,15 @@ class CompressibleLaw(PressureTransform):
         return mu / rho, (mu_p * rho - mu * rho_p) / rho**2
 
 
-# Change of dp/dq, and an eighth of that of the density's slope, as shares, up to which Taylor's polynomial about a
-# known value is the law: to 1e-14 in the density, which the balance is solved with, and 1e-10 in its slope.
+# Reach of a Taylor polynomial: relative change of dp/dq, and an eighth of that of the density's slope, up to which the
+# polynomial replaces the law. The error is then 1e-14 in the density and 1e-10 in its slope. A larger value gives
+# larger errors, a smaller one more look-ups.
 NEAR = 5e-4
 
 
 @njit(cache=True)
 def density_at(P, scale, floor, law, known, rho_out):
-    """Density ratio (n, m); what is not known near by is looked up. Beyond the law's range it is that at its end."""
+    """Density ratio (n, m); looks up pressures beyond a polynomial's reach. Beyond the law's range: that at its end."""
     x, rho = P.reshape(-1), rho_out.reshape(-1)
     lowest, highest = max(floor, law.lowest / scale), law.highest / scale
     if _ratio_near(x, scale, lowest, highest, known, rho) > 0.0:
@@ -207,15 +208,17 @@ def density_at(P, scale, floor, law, known, rho_out):
 
 @njit(cache=True)
 def know_at(P, scale, floor, law, known):
-    """Know the law at the pressures (n, m) of a solution, so that tangents do not depend on the film before."""
+    """Store the law at the pressures (n, m) of a solution, so that tangents do not depend on the previous film."""
     look_up(P.reshape(-1), scale, max(floor, law.lowest / scale), law.highest / scale, law, 0.0, known)
 
 
-# Where a law is straight, its polynomial reaches to infinity.
+# Where a law is linear, the reach of its polynomial is infinite.
 @njit(cache=True, error_model="numpy")
 def look_up(x, scale, lowest, highest, law, near, known):
-    """Know the law at all x (size,), cut at ``lowest`` and ``highest``, that are farther from what is known than
-    ``near`` times its reach."""
+    """Store the law at every x (size,) that is farther from its stored pressure than ``near`` times the reach.
+
+    x is cut at ``lowest`` and ``highest``.
+    """
     for c in range(x.size):
         q = _within(x[c], lowest, highest) * scale
         if abs(q - known[0, c]) <= near * known[8, c] and (q > 0.0) == (known[0, c] > 0.0):
@@ -235,7 +238,7 @@ def _within(x, lowest, highest):
 
 @njit(cache=True, fastmath=FAST)
 def _ratio_near(x, scale, lowest, highest, known, rho_out):
-    """Density ratio by what is known; returns how many pressures are far from it."""
+    """Density ratio from the stored polynomials; returns the number of pressures beyond their reach."""
     at, rho, r1, r2, r3, r4, reach = known[0], known[1], known[4], known[5], known[6], known[7], known[8]
     far = 0.0
     for c in range(rho_out.size):
@@ -249,7 +252,7 @@ def _ratio_near(x, scale, lowest, highest, known, rho_out):
 
 @njit(cache=True, fastmath=FAST)
 def density_slope_at(P, scale, floor, law, known, rho_P_out):
-    """Derivative (n, m) of the density ratio to P at the pressures of the last `density_at`; 0 where it stays."""
+    """Derivative (n, m) of the density ratio to P at the pressures of the last `density_at`; 0 where it is constant."""
     x, slope = P.reshape(-1), rho_P_out.reshape(-1)
     lowest, highest = max(floor, law.lowest / scale), law.highest / scale
     at, r1, r2, r3, r4 = known[0], known[4], known[5], known[6], known[7]

@@ -1,4 +1,4 @@
-"""The lubricant: viscosity and density at the reference state, and the laws by which they depart from it.
+"""Lubricant: viscosity and density at the reference state, and the laws of their change with the state of the oil.
 
 Named oils: ISO grades, SAE single grades and multigrades from two viscosity points
 -----------------------------------------------------------------------------------
@@ -15,11 +15,11 @@ Multigrade: typical figures of one mineral or synthetic oil per grade from its m
 (ASTM D445 and D4052): Mobil Super 3000 0W-20, 2000 5W-30, 2000 X2 10W-40, 1000 X2 15W-40 and 1000 20W-50 (ExxonMobil,
 Mobil Oil Australia, 2015). Their viscosity improvers thin under shear, which these figures at low shear do not show: at
 150 degrees Celsius and 1e6 1/s (ASTM D4683) the same sheets give 7 to 17 % less than the law; add a `CarreauShear`
-where it counts.
+if this matters.
 
-Oils of one grade differ, by some 10 % in the viscosity at 40 and at 100 degrees Celsius: take the two points of the
-data sheet where it is known. Their density at 15 degrees falls with temperature as that of all lubricating oils, by
-0.63 kg/m3 per kelvin (ASTM D1250, table 54D), which the dynamic viscosity takes into account.
+Oils of one grade differ by some 10 % in the viscosity at 40 and at 100 degrees Celsius: if the data sheet of an oil is
+known, use its two points. The density decreases from that at 15 degrees by 0.63 kg/m3 per kelvin, as for all
+lubricating oils (ASTM D1250, table 54D). The dynamic viscosity takes this into account.
 """
 
 from __future__ import annotations
@@ -120,7 +120,7 @@ class Lubricant(Checked):
     Raises
     ------
     InputError
-        For values that can't be meant, or if neither a viscosity nor a temperature law is given.
+        For values outside their ranges, or if neither a viscosity nor a temperature law is given.
 
     Examples
     --------
@@ -188,7 +188,7 @@ class Lubricant(Checked):
 
 
 def transform_of(oil: Lubricant) -> PressureTransform | None:
-    """Transform by which pressure becomes a film's unknown, a `CompressibleLaw` with a density law; None: none."""
+    """Transform from pressure to a film's unknown; `CompressibleLaw` with a density law; None without these laws."""
     viscosity = None if oil.pressure_law is None else oil.pressure_law.bound(oil.viscosity)
     if oil.density_law is not None:
         return CompressibleLaw(oil.density_law, viscosity)

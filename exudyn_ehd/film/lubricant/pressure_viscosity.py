@@ -24,11 +24,11 @@ from exudyn_ehd.status import POSITIVE, Checked, InputError
 
 ROELANDS_SHIFT = 9.67
 TABLE_INTERVALS = 4096
-# The table ends where the oil is this much thicker (a solid, for a film), or at this pressure.
+# The table ends at this viscosity ratio, at which the oil counts as solid, or at this pressure.
 LARGEST_RATIO = 1e7
 LARGEST_PRESSURE = 5e9
-# Slope dp/dq of the line behind a law's end: steep enough for Newton's method to come back with its next step to where
-# the law is steep, and no steeper.
+# Slope dp/dq of the line beyond a law's end. It is just steep enough for the next step of Newton's method to return to
+# the law's steep part.
 BEYOND = 1e3
 
 
@@ -52,14 +52,14 @@ class PressureLaw(Protocol):
 
 @runtime_checkable
 class PressureOption(Protocol):
-    """Viscosity that depends on pressure: `BarusPressure`, `RoelandsPressure` or a law of one's own."""
+    """Viscosity that depends on pressure: `BarusPressure`, `RoelandsPressure` or a user's law."""
 
     @property
     def coefficient(self) -> float:
         """Slope of ln(mu) at ambient pressure, 1/Pa."""
 
     def bound(self, viscosity: float) -> PressureLaw:
-        """The law for a reference viscosity in Pa s."""
+        """Law for a reference viscosity in Pa s."""
 
 
 COEFFICIENT = partial(POSITIVE, hint="mineral oils have 1e-8 to 2.5e-8 1/Pa.")
@@ -96,7 +96,7 @@ class BarusPressure(Checked):
     checks: ClassVar = {"coefficient": COEFFICIENT}
 
     def bound(self, viscosity: float) -> PressureLaw:
-        """The law for a reference viscosity in Pa s, which does not matter here."""
+        """Law for a reference viscosity in Pa s, on which Barus' law does not depend."""
         return self
 
     @property
@@ -179,7 +179,7 @@ class BoundRoelands(NamedTuple):
     @property
     def largest_pressure(self) -> float:
         """Pa, at which the oil counts as solid."""
-        # ln(1 + p / p_0) there; bounded, because nearly constant viscosities reach the ratio nowhere
+        # ln(1 + p / p_0) at that ratio; bounded, because a nearly constant viscosity reaches the ratio at no pressure
         end = min(math.log1p(math.log(LARGEST_RATIO) / self.a) / self.Z, 100.0)
         return min(self.p0 * math.expm1(end), LARGEST_PRESSURE)
 
@@ -267,7 +267,7 @@ class PressureTransform:
             quintic(*self.densities(slope, slope_p), widths),
             np.clip(np.searchsorted(self.q, edges, side="right") - 1, 0, TABLE_INTERVALS - 1),
             TABLE_INTERVALS / self.q[-1],
-            # below, q has no p
+            # below this q there is no pressure p
             -np.inf if alpha >= 0.0 else 0.999 / alpha,
             self.q[-1],
             self.compressibility,
@@ -299,7 +299,7 @@ class PressureTransform:
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
         """p(q), mu(p)/mu_0 (= dp/dq of an incompressible film) and its derivative to q, 1/Pa, for fields (n, m).
 
-        False where q has no p: there p goes on in a line, for iterations that have gone too far.
+        Returns False if some q has no p. There p is continued by a straight line, so that iterations can come back.
         """
         inside, (p_out[:], s, s_q, rho, rho_q) = self.fields(q)
         ratio_out[:], ratio_q_out[:] = rho * s, rho * s_q + rho_q * s
@@ -325,9 +325,9 @@ def quintic(values: np.ndarray, slopes: np.ndarray, bends: np.ndarray, widths: n
 
 @njit(cache=True)
 def law_fields(q, law, out):
-    """Set p(q), s, ds/dq, density ratio and its derivative (5, count); returns whether every q (count,) has a p.
+    """Set p(q), s, ds/dq, density ratio and its derivative (5, count); return whether every q (count,) has a p.
 
-    p is nan in too much tension, and goes on with the slope BEYOND and the density of its end at too much pressure.
+    Below the range of q, p is nan. Above it, p is continued with the slope BEYOND, and the density is that at the end.
     """
     inside = True
     for c in range(q.size):

@@ -28,21 +28,23 @@ from numba import njit
 
 from exudyn_ehd.film.kernels import FUSED
 
-# Intervals of the fluidity's table for every factor of two in 1 + |T|^2, a power of two; scaled shear rate at its end.
+# Intervals of the fluidity's table for every factor of two in 1 + |T|^2; must be a power of two. Scaled shear rate at
+# the table's end; at higher rates the fluidity is constant.
 PARTS, FASTEST = 32, 1e12
 # Numbers in one interval differ in the last 47 of the 52 bits of their mantissa, which follow the 5 of PARTS.
 BITS_OF_ONE, BITS_OF_PART = np.float64(1.0).view(np.uint64), np.uint64(47)
 # Gauss points across the film, of the pressure flow and of the mean stress. Largest error of a flow for exponents from
 # 0.4 on, of any rates: 4.3 % with 3 points, 1.7 % with 4, 1.1 % with 5, 0.55 % with 6, 0.24 % with 8, of either sign.
 FLOW_POINTS, STRESS_POINTS = 6, 12
-# Share of the stress at which Newton's step is the last one: on the way, where what it leaves of stress and flow is its
-# square, and for exact derivatives, of which it leaves itself.
+# Newton's step over the stress below which it is the last step. The first value is for iterations of the film: the
+# error of stress and flow is then the square of the step. The second value is for exact derivatives, whose error is as
+# large as the step.
 LAST_STEP, EXACT, MOST_STEPS, MOST_HALVINGS = 1e-5, 1e-12, 200, 30
-# Numbers that a place keeps of its last profile: S, G (2), T_m (2), its six derivatives.
+# Number of values stored of a place's last profile: S, G (2), T_m (2), six derivatives of T_m.
 LAST = 11
-# Pressure stress over that of the sliding below which a flow over its gradient is its derivative.
+# Stress of the pressure flow over that of the sliding below which the flow's derivative replaces flow over gradient.
 SLIGHT = 1e-5
-# Rate of the sliding over that of the pressure flow below which the mean stress over the rate is that at this rate.
+# Shear rate of the sliding over that of the pressure flow, below which stress over rate is that at this limit.
 STILL = 1e-3
 
 
@@ -89,7 +91,7 @@ def fluidity_table(law: RateLaw) -> np.ndarray:
     """Fluidity ``f(s)``, s = |T|^2, of ``T = Gamma ratio(Gamma)`` as cubics in s; of Carreau's law within 1e-8.
 
     Value and slope are exact at the ends of 32 equal parts of every factor of two in 1 + s. Rows: 1 + s where a part
-    begins, 1 over its width, four coefficients. Behind the last part, at `FASTEST`, the fluidity stays.
+    begins, 1 over its width, four coefficients. Beyond the last part, at `FASTEST`, the fluidity is constant.
     """
     unit = 1.0 / law.relaxation_time
     highest = FASTEST * float(law.ratio(np.array(FASTEST * unit)))
@@ -174,8 +176,8 @@ def _moments(T_x, T_z, S, G_x, G_z, oil, points):
 def profile(S, G_x, G_z, oil, points, T_x, T_z, last_step):
     """Return the `Profile` of one place, and the mean stress's derivatives T_zs, T_zx, T_zz.
 
-    By Newton's method from a mean stress, which may prolong but not mislead it, until a step is below the share
-    ``last_step`` of the stress.
+    Newton's method starts at the mean stress (T_x, T_z) and ends when a step is below ``last_step`` times the stress. A
+    poor start costs steps, but the solution is the same.
     """
     r, F, H, C, B = _moments(T_x, T_z, S, G_x, G_z, oil, points)
     for _ in range(MOST_STEPS):
@@ -214,7 +216,7 @@ def _scale(T_x, T_z, G_x, G_z):
 
 @njit(cache=True, error_model="numpy", fastmath=FUSED, inline="always")
 def _follow(S, G_x, G_z, oil, points, last_step, last):
-    """`Profile` from where the derivatives of the last one lead, ``last`` (`LAST`,), which it becomes."""
+    """Return the `Profile`, started from the last one, ``last`` (`LAST`,), by its derivatives; updates ``last``."""
     dS, d_x, d_z = S - last[0], G_x - last[1], G_z - last[2]
     T_x, T_z = last[3], last[4]
     by_x = last[5] * dS + last[6] * d_x + last[7] * d_z
@@ -237,13 +239,13 @@ def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, last, out)
     slope, cross : (n, m) arrays
         Scaled pressure gradient along the link, and across it.
     fluid : (n, m) or (1, 1) array
-        1 over the viscosity ratio of the place.
+        1 over the viscosity ratio at the link.
     speed, k : float
         ``k vx``, with k = 2 lambda R / c.
     axis : int
         0: links along the sliding, 1: across.
     last : (n, m, LAST) array
-        Profiles of the last call, where this one starts; zeros for none.
+        Profiles of the last call, from which the iterations start; zeros if there are none.
     out : (5, n, m) array
         Ratio a; da/dH and da/dvx at fixed gradients; derivative of the flow to ``slope`` over a, and to ``cross``.
     """
@@ -283,7 +285,7 @@ def thin_shear(H, slopes, fluid, speed, k, oil, points, last, out):
             h = H[i, j]
             S, per = speed / h, 6.0 * k * h * (fluid[i, j] if wide else fluid[0, 0])
             G_x, G_z = per * slopes[0, i, j], per * slopes[1, i, j]
-            # a journal that hardly turns meets what the pressure flow leaves of the viscosity
+            # for a journal that hardly turns, the viscosity is that under the shear of the pressure flow
             least = STILL * (1.0 + abs(G_x) + abs(G_z))
             turns = abs(S) > least
             at = S if turns else least

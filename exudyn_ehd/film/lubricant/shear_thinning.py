@@ -9,10 +9,12 @@ speed, the link's own gradient, and the gradient across it, the mean of those at
 nonlinear in its pressure (`exudyn_ehd.film.solvers.liner.film`). Couette flux H unchanged, because pressure flow is odd
 in the gradient; the shear on the walls is ``tau_m -+ (h / 2) dp/dx``, its mean ``tau_m = ratio mu_0 U / h``.
 
-What is left out: axial sliding, slow beside the turning, does not thin, and meets the ratio of the turning; the mean
-stress along z that pressure flow in both directions makes, since it cancels over an aligned film.
-Unknowns P of a density law are taken for pressures over the viscosity's ratio, which they are but for the
-density's. A viscosity that depends on pressure or temperature scales mu_0, at the same relaxation time.
+Two effects are omitted. Axial sliding, which is slow compared with the rotation, does not thin the oil; its viscosity
+ratio is that of the rotation. The mean stress along z due to pressure flow in both directions cancels over an aligned
+film.
+With a density law the gradients of the transformed pressure P stand for pressure gradients over the viscosity ratio;
+this neglects the density ratio. A viscosity that depends on pressure or temperature scales mu_0 and does not change the
+relaxation time.
 
 Symbols: k = 2 lambda R / c, so that lambda U / h = k vx / H.
 """
@@ -45,11 +47,11 @@ THINS = "the law is that of an oil that thins."
 
 @runtime_checkable
 class ShearLaw(Protocol):
-    """Viscosity that depends on the shear rate: `CarreauShear`, or a law of one's own."""
+    """Viscosity that depends on the shear rate: `CarreauShear`, or a user's law."""
 
     @property
     def onset(self) -> float:
-        """Shear rate from which on the oil thins, 1/s, for the audit."""
+        """Shear rate above which the oil thins, 1/s, for the audit."""
 
     def bound(self, radius: float, clearance: float) -> LinkLaw:
         """The law as flux effect and shear factor of a bearing of this radius and clearance, m.
@@ -118,7 +120,7 @@ class CarreauShear(Checked):
 
     @property
     def onset(self) -> float:
-        """Shear rate from which on the oil thins, 1/s."""
+        """Shear rate above which the oil thins, 1/s."""
         return 1.0 / self.relaxation_time
 
     def bound(self, radius: float, clearance: float) -> ShearThinning:
@@ -127,7 +129,7 @@ class CarreauShear(Checked):
 
 
 class ShearThinning(LinkLaw):
-    """A law of the shear rate in scaled form: flux effect and shear factor of one bearing model.
+    """Law of the shear rate in scaled form: flux effect and shear factor of one bearing model.
 
     The film solver calls `place` once, and `see` whenever its pressure changes.
 
@@ -140,11 +142,11 @@ class ShearThinning(LinkLaw):
     Attributes
     ----------
     field : Fluidity or None
-        Viscosity over that of the film's scale, if it varies over the film.
+        Viscosity over the film's reference viscosity, if it varies over the film; else None.
     radii : pair of arrays (m,) or floats
-        Of rows of vertices and of links in z over the film's radius, where the sliding grows with them and distances
-        around too, as on a face: with x = r R the rate of sliding is ``k vx / (H / r)``, and gradients act as in the
-        gap H / r.
+        Radii of the rows of vertices and of the links in z, over the film's radius. On a face the sliding speed and the
+        distances around grow with this ratio r: the shear rate of sliding is ``k vx / (H / r)``, and gradients act as
+        in the gap H / r.
     """
 
     changes_carriers = False
@@ -163,7 +165,7 @@ class ShearThinning(LinkLaw):
         self.per_speed = 2.0 * radius * law.relaxation_time / clearance
 
     def place(self, grid: FilmGrid, flow_x: float) -> None:
-        """Buffers on a grid; ``flow_x`` = 0 drops the circumferential pressure flow."""
+        """Make the buffers for a grid; ``flow_x`` = 0 drops the circumferential pressure flow."""
         # with gradients and without: profiles of links in theta and z, and at vertices
         self.profiles = np.zeros((2, 3, *grid.shape, LAST))
         self.found = np.zeros((2, 5, *grid.shape))
@@ -174,7 +176,7 @@ class ShearThinning(LinkLaw):
         self.lengths = np.divide(1.0, self.links, out=np.zeros_like(self.links), where=self.links != 0.0)
 
     def see(self, P: np.ndarray) -> None:
-        """Take the gradients (2, n, m) of the film's unknown P (n, m) on links, at vertices, and across the links."""
+        """Compute the gradients (2, n, m) of the unknown P (n, m): along the links, across them, and at vertices."""
         self.last = self.profiles[int(P.any())]
         self.slopes = -drops(P) * self.links
         if self.cuts is not None:
@@ -183,7 +185,7 @@ class ShearThinning(LinkLaw):
         self.cross = np.array((on_links(self.vertex[1])[0], on_links(self.vertex[0])[1]))
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
-        """Multiply the conductances of the links by the thin oil's, at the gradients last seen."""
+        """Multiply the conductances of the links by the ratios for thinned oil, at the gradients of the last `see`."""
         k, one, f = self.per_speed, np.ones((1, 1)), self.field
         parts = (
             (gap_x, one if f is None else f.inverse_x, flux.gx, flux.gx_h, flux.gx_v),
@@ -200,10 +202,10 @@ class ShearThinning(LinkLaw):
             g *= found[0]
 
     def slide(self, flux: LinkFlux, vx: float) -> np.ndarray:
-        """Conductances in theta where sliding alone thins, after `apply` without gradients: exact, with derivatives.
+        """Make the conductances in theta exact where sliding alone thins, after `apply` without gradients.
 
-        Their ratio is the law's inverse slope dS/dT, which `apply` interpolates and leaves without derivatives, since
-        nothing flows there. Returns what it multiplies the conductances by (n, m).
+        Their ratio is the law's inverse slope dS/dT. `apply` interpolates it and sets no derivatives, which are not
+        needed without flow. Returns the factors (n, m) by which the conductances were multiplied.
         """
         gap, k = flux.gap_x, self.per_speed * self.radii[0]
         law, S = self.law, k * vx / gap
@@ -228,9 +230,9 @@ class ShearThinning(LinkLaw):
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
     ) -> np.ndarray:
-        """tau_m h / (mu_0 U) at the vertices, at the gradients last seen, with its derivatives to H and vx.
+        """tau_m h / (mu_0 U) at the vertices, at the gradients of the last `see`, with its derivatives to H and vx.
 
-        Returns those (2, n, m) to the gradients along theta and z.
+        Returns its derivatives (2, n, m) to the gradients along theta and z.
         """
         fluid = np.ones((1, 1)) if self.field is None else 1.0 / self.field.ratio
         out, r = np.empty((5, *H.shape)), self.radii[0]
@@ -257,7 +259,7 @@ class ShearThinning(LinkLaw):
 
 
 def _central(link: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Factors of the differences before and behind every vertex in its gradient, of second order on any spacing.
+    """Factors of the differences to the previous and to the next vertex in a gradient, of second order.
 
     ``link`` is 1 over the distance to the next vertex of a ring, 0 where there is none.
     """

@@ -21,15 +21,16 @@ from exudyn_ehd.status import NOT_NEGATIVE, Checked, InputError, require_vector
 # Walther's constant for viscosities above 2 mm2/s, ASTM D341.
 WALTHER_SHIFT = 0.7
 CELSIUS_15 = 288.15
-# Pa s, of the double logarithm of a table's viscosity: below that of liquids. A smaller one straightens oils less.
+# Unit of viscosity, Pa s, in the double logarithm of a table; below the viscosity of liquids, so that the logarithm is
+# positive. With a smaller unit the curves of oils are less straight.
 TABLE_UNIT = 1e-5
 
 
 @runtime_checkable
 class TemperatureLaw(Protocol):
-    """Viscosity that depends on temperature: a law of this module or one's own.
+    """Viscosity that depends on temperature: a law of this module or a user's law.
 
-    ``limits``, if it has any: lowest and highest temperature, K, at which a film may have it.
+    ``limits``, an optional attribute: lowest and highest temperature, K, that a film with this law may have.
     """
 
     def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
@@ -185,7 +186,7 @@ class TableViscosity(Checked):
     Points 20 K apart give ISO and multigrade oils within 0.1 %, SAE single grades, which bend more, within 1.2 %;
     points 10 K apart within 0.01 and 0.2 %.
 
-    A film outside the table is an error: `InputError` for a given temperature, `FilmError` for one that a film takes.
+    Temperatures outside the table are errors: `InputError` for a given temperature, `FilmError` for that of a film.
 
     Parameters
     ----------
@@ -208,7 +209,7 @@ class TableViscosity(Checked):
         for name in ("temperatures", "viscosities"):
             values = getattr(self, name)
             size = len(values) if isinstance(values, Sequence | np.ndarray) else 2
-            # a list or an array compares and hashes like the tuple that it is
+            # lists and arrays are stored as tuples, which can be compared and hashed
             object.__setattr__(self, name, tuple(require_vector(f"TableViscosity.{name}", values, size).tolist()))
         T, mu = np.array(self.temperatures), np.array(self.viscosities)
         rising = T.size > 1 and T[0] > 0.0 and np.all(np.diff(T) > 0.0)
@@ -228,7 +229,7 @@ class TableViscosity(Checked):
     def curve(self) -> scipy.interpolate.CubicHermiteSpline:
         """Double logarithm of the viscosity over the logarithm of the temperature; straight beyond both ends.
 
-        Searches for a film's temperature pass through such states; results are within the ends.
+        The search for a film's temperature may use states beyond the ends; results are between them.
         """
         x, y = np.log(self.temperatures), np.log(np.log(np.array(self.viscosities) / TABLE_UNIT))
         slopes = scipy.interpolate.PchipInterpolator(x, y)(x, 1)
@@ -252,9 +253,9 @@ def require_covered(where: str, law: TemperatureLaw, temperature: float) -> None
 
 
 def _kelvin(temperature: float | np.ndarray) -> float | np.ndarray:
-    """A float as it is, since one temperature of the whole film takes the law once a step.
+    """Return a float unchanged, which is fast for the one temperature of a whole film.
 
-    Anything else as an array.
+    Other arguments are returned as arrays.
     """
     return temperature if isinstance(temperature, float) else np.asarray(temperature)
 

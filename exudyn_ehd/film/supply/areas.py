@@ -4,20 +4,20 @@ Their edges act where they are (see `exudyn_ehd.film.supply.rows` and `exudyn_eh
 housing and, with ``rotating=True``, in the journal; those need the spin angle of the journal.
 
 With `ElrodAdams` a supply area is full of oil (fill = 1): it feeds starved parts even at the cavity pressure. Its
-pressure acts on the journal. The surfaces neither shear a film nor touch there; see `exudyn_ehd.film.supply.cuts` for
-areas with a depth. What flows out of it is reported; with `ElrodAdams` supply, leakage and the film's change of content
-balance to rounding, the other closures lose oil at the film's rupture.
+pressure acts on the journal. In an area there is neither contact nor the shear of a film; areas with a depth have the
+shear of `exudyn_ehd.film.supply.cuts`. Results contain the flow out of every area. With `ElrodAdams` supply, leakage
+and the film's change of content balance to rounding; the other closures lose oil at the film's rupture.
 With `SwiftStieber` on the default grid an area in the housing feeds mostly within 2 %, next to a cavity within 2.5 % of
 the larger of its flow and the bearing's leakage.
 
-The flow out of an area that turns with the journal ripples with `ElrodAdams`, as its edges pass columns of the grid.
+With `ElrodAdams` the flow out of an area that turns with the journal ripples, because its edges pass grid columns.
 Its mean over time is that of an area at rest, within 0.2 %; the ripple of an axial groove has a standard deviation of
 5 % of the mean at 150 steps a turn, 14 % at 600 and 17 % at 2400. Eccentricity and power loss agree within 0.3 %,
 leakage within 1.5 %.
 
-Within the cavity of `ElrodAdams` the band of oil behind an area is as wide as it, unless rows of other areas are in the
-way. Loads of films that live on that oil alone are mostly within 2 % on the default grid, at worst within 15 %, flows
-within twice that; ``supply resolution`` of the audit measures it.
+Within the cavity of `ElrodAdams` the band of oil downstream of an area is as wide as the area, unless rows of other
+areas prevent it. If this band is the only oil of a film, errors of its load are mostly below 2 % on the default grid,
+at worst 15 %; errors of flows are up to twice as large. ``supply resolution`` of the audit measures them.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ import numpy as np
 from exudyn_ehd.film.supply.restrictors import Restrictor
 from exudyn_ehd.status import POSITIVE, ROUNDING, Checked, InputError, require_bool, require_number
 
-# Length of an axial groove without one, over the bearing's.
+# Length of an axial groove whose ``length`` is None, over the bearing's length.
 WHOLE_GROOVE = 0.875
 
 
@@ -156,10 +156,10 @@ class Hole(_Area):
 
     With a pressure well above the film's, the error of its flow on the default grid is 1 %.
 
-    An area of any kind that turns with the journal takes the grid's columns one after the other, and with `ElrodAdams`
-    fills the cavity of each as it comes. So its flow ripples: rms 20 to 30 % of the mean of a hole over 0.3 R, 50 to
-    80 % of a pocket or a groove along the axis. The oil is balanced to round-off, means over the passage of a column
-    are right. Forces ripple by up to 0.5 %, the leakage by 1.5 %.
+    An area of any kind that turns with the journal covers one column of the grid after the other. With `ElrodAdams` it
+    fills the cavity of a column when it reaches it, so that its flow ripples. The rms of the ripple is 20 to 30 % of
+    the mean for a hole over 0.3 R, and 50 to 80 % for a pocket or a groove along the axis. The oil is balanced to
+    round-off, and means over the passage of a column are right. Forces ripple by up to 0.5 %, the leakage by 1.5 %.
 
     Parameters
     ----------

@@ -1,33 +1,35 @@
-"""Supply areas on the grid: prescribed vertices, shares of volumes, links that end at an edge, and shear of their oil.
+"""Supply areas on the grid: prescribed vertices, covered volumes, links that end at an edge, and shear of their oil.
 
 Links end at an edge between two columns or two rows.
 
 The link from the first free vertex to the last one inside conducts over the distance d to the edge, H^3 / d in place of
 H^3 / s with the distance s of the columns or rows, and integrals take the supply's pressure up to an edge between
-columns. Where such an edge passes a vertex, its link becomes infinitely short and it has the supply's pressure on
-either side: forces and flows are continuous. The control volumes stay those of the grid, so that flows balance as
-without supply.
+columns. When such an edge passes a vertex, the link becomes infinitely short and the vertex has the supply's pressure
+before and after, so that forces and flows are continuous. The control volumes remain those of the grid, so that flows
+balance as without supply.
 
 Shares of the grid's control volumes that supply areas cover
 ------------------------------------------------------------
 The function that is one at a vertex and falls to zero at its neighbours in theta and z, integrated over an area, is the
 part of the area that belongs to the vertex; its integral over the whole surface is the control volume. So the parts add
-up to the area to rounding, what is linear between the vertices is integrated exactly, and nothing steps where an edge
-of a turning area passes a column. Along z an area has the grid's finer integration weights on the rows inside.
+up to the area to rounding, and fields that are linear between the vertices are integrated exactly. The parts are
+continuous when an edge of a turning area passes a column. Along z, rows inside an area have the grid's integration
+weights, which are of higher order.
 
 Shear of the oil in supply areas: flow that returns within a recess
 -------------------------------------------------------------------
-Between the sliding surface at y = d, the recess's depth, and its bottom at y = 0 the oil that the surface takes along
-comes back, as the lands beside let far less of it through. Laminar flow with no net flow, ``int u dy = 0``, is
+The sliding surface at y = d, the recess's depth, moves oil towards one end of the recess. This oil flows back above the
+bottom at y = 0, since far less of it passes over the adjacent lands. Laminar flow with no net flow, ``int u dy = 0``,
+is
 
     u = U (3 y^2 / d^2 - 2 y / d),      tau = mu du/dy = 4 mu U / d at the surface.
 
 The bottom is pulled backwards by 2 mu U / d. The pressure that drives the flow back, dp/dx = 6 mu U / d^2, presses on
-the recess's end walls by 6 mu U / d per area: together the side with the recess gets 4 mu U / d in the direction of U,
-what the other one loses. This pressure rises by 6 mu U l / d^2 over the length l, which the supply's uniform pressure
-leaves out. The side walls brake in addition, which the equation does not count. A circumferential groove has no end
-walls. If it were wide against its depth, its oil would turn with mu U / d; at the usual widths of two to three depths
-the side walls make some three times that of it. It has the same law.
+the recess's end walls by 6 mu U / d per area. So the force per area on the side with the recess is 4 mu U / d in the
+direction of U, and that on the other side is the opposite. This pressure rises by 6 mu U l / d^2 over the length l; the
+uniform pressure of the supply omits this rise. The friction of the side walls is omitted, too. A circumferential groove
+has no end walls. In one much wider than deep the stress would be mu U / d; at the usual widths of two to three depths
+the side walls make it about three times as large. So such grooves have the same law.
 
 Turbulent: by Hirs' bulk flow the stress on a wall is ``n rho u^2 / 2 (rho u d / mu)^m`` with the wall's speed u against
 the mean flow. In a recess the mean flow rests, so that u = U at the sliding surface,
@@ -66,8 +68,9 @@ from exudyn_ehd.film.supply.areas import (
 from exudyn_ehd.film.supply.holes import SHORTEST, Circle, circle, strength, strengths
 from exudyn_ehd.status import ROUNDING
 
-# Chords that a round hole is integrated over, by the rule of Gauss and Chebyshev: the area is exact with any number;
-# with 128 the shares of control volumes inside a hole over ten rows are within 1 % of one.
+# Number of chords for the integration over a round hole, by the rule of Gauss and Chebyshev. The area is exact with any
+# number; with 128 the shares of control volumes inside a hole over ten rows are within 1 % of one. More chords reduce
+# this error.
 CHORDS = 128
 
 
@@ -79,7 +82,7 @@ def area_parts(
     Returns
     -------
     share, weight : (n, m) arrays
-        Of the control volumes, and of the integration weights.
+        Covered shares of the control volumes, and covered parts of the integration weights.
     """
     turned = spin if area.rotating else 0.0
     if isinstance(area, Hole):
@@ -92,9 +95,9 @@ def area_parts(
 
 
 def row_parts(area: SupplyArea, grid: FilmGrid) -> tuple[np.ndarray, np.ndarray]:
-    """Return the shares (m,) of the rows' widths from end to end of an area, and the part of their weights.
+    """Return the shares (m,) of the rows' widths within an area's axial span, and the parts of their weights within.
 
-    Rows inside have the grid's weights, as have the lands that the outermost rows belong to as well.
+    Rows inside have the grid's weights. The two outermost rows get the rest, so that the weights add up to the span.
     """
     (low, high), z, width = axial_span(area), grid.z * grid.reference_length, grid.width_z
     if not grid.flows_along_z:  # slices of their own
@@ -141,7 +144,7 @@ def _columns(grid: FilmGrid, center: float, half: float | np.ndarray) -> np.ndar
     columns = np.arange(math.floor(np.min(low)), math.ceil(np.max(high)) + 1)
     parts = vertex_parts(columns.astype(float), low, high)
     out = np.zeros((*parts.shape[:-1], n))
-    out[..., columns % n] = parts  # never all around: there is a film beside every area
+    out[..., columns % n] = parts  # an area never covers a whole ring of columns
     return out
 
 
@@ -161,18 +164,18 @@ class SupplyMap:
     ----------
     supply : tuple of SupplyArea
     grid : FilmGrid
-        Its arrays ``fixed`` and ``weight`` are those of the areas from now on.
+        The map changes its arrays ``fixed`` and ``weight`` to those with the areas.
     around : bool
         Whether there is pressure flow in theta.
 
     Attributes
     ----------
     grid : FilmGrid
-        The same with `FilmGrid.lands`, and with `FilmGrid.cuts` if there are others than circumferential grooves.
+        The same grid with `FilmGrid.lands`, and with `FilmGrid.cuts` if not all areas are circumferential grooves.
     masks : list of (n, m) bool arrays
         Vertices of every area at its last position; a shared vertex counts for the first area.
     parts : list of (n, m) arrays
-        Scaled area of every one at the vertices; a place that two cover counts for the first.
+        Scaled part of every area at the vertices; a place that two areas cover counts for the first.
     land : (n, m) array
         Shares of the control volumes outside of all areas.
     rotating : bool
@@ -207,7 +210,7 @@ class SupplyMap:
         return True
 
     def _place(self) -> None:
-        """Prescribed vertices, cut links and weights at the present spin."""
+        """Set prescribed vertices, cut links and weights for the present spin."""
         g = self.grid
         share = np.ones((2, *g.shape))
         g.fixed[:] = self.ends
@@ -235,7 +238,7 @@ class SupplyMap:
             g.shear_weight[:] -= part
 
     def _hole(self, area: Hole) -> tuple[Circle, int, float]:
-        """A hole on the grid at the present spin, the column next to its centre, and the factor of its links."""
+        """Return a hole on the grid at the present spin, the column nearest its centre, and the factor of its links."""
         g, (center, step) = self.grid, column_of(self.grid, area.angle + (self.spin if area.rotating else 0.0))
         radius, z = 0.5 * area.diameter / (step * g.reference_length), g.z - area.z / g.reference_length
         rows = tuple(((z - z[np.argmin(np.abs(z))]) / step).tolist())
@@ -248,10 +251,11 @@ class SupplyMap:
         return circle(rows, radius, offset), column, factor
 
     def _cut_hole(self, hole: Circle, column: int, factor: float) -> None:
-        """Links of a hole to the film.
+        """Set the links of a hole to the film.
 
-        A vertex with a hole that is smaller than what it feeds like has not the hole's pressure around: integrals take,
-        as the flow does, the mean of its neighbours' for what its links conduct less.
+        If a hole is smaller than the one that a vertex stands for without a factor, its links conduct less. The mean
+        pressure around the vertex is then below the hole's: integrals use the mean of the neighbours' pressures for the
+        same share by which the conductance is reduced.
         """
         g, n = self.grid, self.grid.x.size
         assert g.cuts is not None
@@ -286,8 +290,10 @@ class SupplyMap:
 def cover(
     area: AxialGroove | CircumferentialGroove | Pocket, grid: FilmGrid, spin: float, mask: np.ndarray, share: np.ndarray
 ) -> None:
-    """Mark the vertices inside an area in mask (n, m), edges included, and take down in ``share`` (2, n, m) what part
-    of the links in theta and z to their neighbours is film."""
+    """Mark the vertices inside an area, edges included, in mask (n, m), and set the film's share of cut links.
+
+    ``share`` (2, n, m): part of the links in theta and z, to the neighbours of these vertices, that lies in the film.
+    """
     low, high = axial_span(area)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     rows = np.ones(grid.z.size, dtype=np.bool_)
@@ -307,7 +313,7 @@ def cover(
     covered = np.flatnonzero(rows)
     if not (covered.size and math.isfinite(low)):
         return
-    # of a column next to an edge as much as its control volume lies within: nothing steps where it is passed
+    # a column next to an edge counts by the part of its control volume within, so that the result is continuous
     columns = np.arange(first - 1, last + 2)
     within = np.clip(np.minimum(columns + 0.5, center + half) - np.maximum(columns - 0.5, center - half), 0.0, 1.0)
     z, top = grid.z * grid.reference_length, covered[-1]
@@ -322,9 +328,10 @@ def cut_links(covered: np.ndarray, share: np.ndarray) -> tuple[np.ndarray, np.nd
     """`FilmGrid.cuts` (2, n, m) of links from ``covered`` to free vertices, of which ``share`` (2, n, m) is film, and
     the columns' widths (n, m) over those of the grid.
 
-    Integrals, and flows in z, take the supply's pressure up to the edge: the free column stands for s (1 - s) of a
-    distance s less (the trapezoidal rule has (1 - s) / 2, the same in the mean; here nothing is left where the edge
-    passes a vertex), the last covered one for twice that more, the one before for that less, which keeps middles.
+    Integrals, and flows in z, use the supply's pressure up to the edge. With the film's share s of a link, the width of
+    the free column is reduced by s (1 - s) column distances. The trapezoidal rule would give (1 - s) / 2, which has the
+    same mean over s but is not zero when the edge passes a vertex. The last covered column becomes wider by twice that,
+    and the column before it narrower by once that, which keeps the centre of the widths.
     """
     n, cuts, width = len(covered), np.ones_like(share), np.ones(covered.shape)
     i, j = np.nonzero(covered != np.roll(covered, -1, axis=0))
@@ -344,7 +351,7 @@ def cut_links(covered: np.ndarray, share: np.ndarray) -> tuple[np.ndarray, np.nd
     return cuts, width
 
 
-# tau over mu U / d of the laminar flow.
+# Stress tau of the laminar flow over mu U / d.
 RECIRCULATION = 4.0
 
 
@@ -366,12 +373,12 @@ def recess_shear(
     spin: float,
     oil: tuple[np.ndarray, np.ndarray],
 ) -> RecessShear | None:
-    """Shear in the areas that have a depth; None without any.
+    """Shear in the areas that have a depth; None if no area has one.
 
     Parameters
     ----------
     depths : list of float or None
-        Of every area, m; None: deep.
+        Depth of every area, m; None: so deep that its shear is omitted.
     parts : list of (n, m) arrays
         Scaled area of every one at the vertices.
     clearance, spin : float

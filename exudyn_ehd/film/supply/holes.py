@@ -1,17 +1,19 @@
-"""Round holes of any size: the vertices that they cover, and how links conduct that end at a circle.
+"""Round holes of any size: the vertices that they cover, and the conductances of links that end at a circle.
 
-A row of the grid lies on the hole's centre. A grid this coarse against a circle feeds more or less than the hole does:
-in a film of one thickness the pressure falls by the logarithm of the distance from the centre, and the hole feeds
+A row of the grid lies on the hole's centre. The grid is coarse compared with the circle, so that the flow on it differs
+from that of the hole. In a film of one thickness the pressure is linear in the logarithm of the distance from the
+centre, and the flow of the hole is
 
     Q = 2 pi H^3 (p_hole - p(s)) / ln(s / r),
 
-so the links of the hole get the factor with which the grid, given the logarithm some intervals around, has this flow:
-in full at the innermost vertex, not at all at one on the circle, so that nothing steps where vertices come and go. A
+So the links of the hole are multiplied by a factor with which the grid has this flow if the pressure some intervals
+around is that of the logarithm. The factor acts in full at the innermost vertex and not at all at one on the circle, so
+that the flow is continuous when vertices enter or leave the circle. A
 vertex on a square grid with spacing h feeds, without a factor, like a hole of 0.198 h (D. W. Peaceman, SPE Journal 18
 (1978) 183; 0.14 sqrt(dx^2 + dz^2) on a rectangular one, SPE Journal 23 (1983) 531).
 
-A column of the grid lies on the first hole in the housing. Another one that lies between two columns feeds the nearest
-vertex, which moves what it feeds by up to half a column.
+A column of the grid lies on the first hole in the housing. Another hole that lies between two columns feeds the nearest
+vertex, so that its oil enters up to half a column from its centre.
 """
 
 from __future__ import annotations
@@ -28,24 +30,24 @@ from scipy.sparse.linalg import splu
 
 from exudyn_ehd.status import ROUNDING
 
-# Shortest link over its spacing (rounding of its flow stays below 1e-11), largest factor, intervals of film around a
-# hole on which the factor is found.
+# Shortest link over its spacing (with it rounding errors of its flow are below 1e-11; a shorter one has larger errors),
+# largest factor, and number of intervals around a hole in the calculation of the factor.
 SHORTEST, LARGEST, AROUND = 1e-4, 4.0, 3
 
 
 class Circle(NamedTuple):
-    """A hole on columns of unit distance.
+    """Hole on a grid whose columns have the distance 1.
 
     Attributes
     ----------
     covered : (k, 2) int array
-        Column and row of its vertices; columns count from the one next to its centre.
+        Column and row of the covered vertices; columns count from the one nearest the hole's centre.
     links : (q, 3) int array
         Axis (0: theta, 1: z), column and row where its links to other vertices begin.
     lengths : (q,) array
-        Film on these links over their spacing.
+        Length of the film on these links over their spacing.
     depths : (q,) array
-        How far inside the circle their vertex lies in theta, 1: the innermost.
+        Depth of the links' covered vertex inside the circle in theta, from 0 on the circle to 1 at the innermost one.
     """
 
     covered: np.ndarray
@@ -59,7 +61,7 @@ class Circle(NamedTuple):
 
 
 def circle(rows: tuple[float, ...], radius: float, offset: float) -> Circle:
-    """A hole whose centre lies ``offset`` columns, -0.5 to 0.5, from one; ``rows`` are axial distances from it."""
+    """Hole whose centre lies ``offset``, -0.5 to 0.5, columns from a column; ``rows``: axial distances from it."""
     spans: dict[int, tuple[int, int]] = {}
     links: list[tuple[int, int, int]] = []
     lengths: list[float] = []
@@ -135,7 +137,7 @@ def strength(rows: tuple[float, ...], radius: float, offset: float) -> float:
 
 @lru_cache(maxsize=64)
 def strengths(rows: tuple[float, ...], radius: float) -> tuple[np.ndarray, np.ndarray]:
-    """Offsets from -0.5 to 0.5 and factors there, to be interpolated between; steps lie where vertices come and go."""
+    """Offsets from -0.5 to 0.5 and factors for interpolation, with steps where vertices enter or leave the circle."""
     halves = {math.sqrt(radius * radius - z * z) % 1.0 for z in rows if abs(z) <= radius}
     steps = {0.0, 0.5, *(x for half in halves for x in (half, 1.0 - half) if x < 0.5)}
     offsets: list[float] = []

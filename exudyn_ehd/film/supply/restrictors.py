@@ -1,4 +1,4 @@
-"""Restrictors of supply areas, and seals: the pressure behind them follows from their balance with the film.
+"""Restrictors of supply areas, and seals: the pressure between them and the film follows from a balance of flows.
 
 The flow Q that the film takes from an area with the pressure p comes through the restrictor, from the supply pressure
 p_s (W. B. Rowe, Hydrostatic, Aerostatic and Hybrid Bearing Design, 2012):
@@ -29,8 +29,8 @@ bulk modulus K the restrictor then passes
 in place of Q in its balance, by backward Euler over the accepted steps. A steady film has Q_r = Q. An area at the
 cavity pressure fills again without a delay.
 
-Seals at the ends of the film are restrictors all around: their flow per length is ``C (p_end - p_outside)``, and the
-pressure at the end one more unknown of the film (`sealed_grid`).
+Seals at the ends of the film are restrictors all around: their flow per length is ``C (p_end - p_outside)``. The
+pressure at a sealed end is an additional unknown of the film (`sealed_grid`).
 """
 
 from __future__ import annotations
@@ -76,9 +76,9 @@ class Orifice(_Feed):
     discharge_coefficient : float, default 0.6
         C_d, above 0 and up to 1.
     compressible_volume : float, default 0.0
-        V of the oil between restrictor and film, that is in pocket and line, m3: in joints and in small motions about
-        an equilibrium it takes ``V / K dp/dt``, and large ones make the bearing unstable. 0: the pressure follows
-        without a delay.
+        V of the oil between restrictor and film, which is in pocket and line, m3. In joints and in small motions about
+        an equilibrium its compression takes the flow ``V / K dp/dt``. A large V makes the bearing unstable. 0: the
+        pressure follows without a delay.
     bulk_modulus : float, default 1.7e9
         K of that oil, Pa: 1.4e9 to 1.8e9 without air. Bubbles of the volume share x at an absolute pressure p lower it
         to ``1 / (1 / K + x / p)``, 1 % of them at 1 MPa to 1e8.
@@ -144,7 +144,7 @@ class Capillary(_Feed):
 
 @dataclass(frozen=True, kw_only=True)
 class GivenFlow(_Feed):
-    """Constant flow into a supply area, whatever its pressure: a pump or a flow regulator of its own.
+    """Constant flow into a supply area at any pressure, by a pump or a flow regulator for this area alone.
 
     Parameters
     ----------
@@ -176,8 +176,8 @@ class EndSeal(Checked):
     """Seal at an end of the bearing, as the piston ring of a squeeze-film damper: ``q = conductance (p - p_outside)``.
 
     q is the axial outflow per length around, p the film's pressure at the end, which is unknown, and p_outside the one
-    of ``end_pressures``. What the seal lets through does not depend on the gap. 0: tight; from some 1e4 c^3 / (12 mu L)
-    on it is as good as open. A narrow slot of height s and length l has s^3 / (12 mu l).
+    of ``end_pressures``. The conductance does not depend on the gap. 0: tight; above some 1e4 c^3 / (12 mu L) the end
+    is practically open. A narrow slot of height s and length l has s^3 / (12 mu l).
 
     Results have a row outside of every seal, at ``z`` beyond the end by 1e-9 of the length. Of the axial force on a
     seal one half acts on either surface.
@@ -244,15 +244,15 @@ def sealed_grid(grid: FilmGrid, seals: tuple[float | None, float | None]) -> Fil
     )
 
 
-# Largest conductance of a seal over that of a film as thick as the clearance and as long as the bearing. Larger ones
-# change nothing but the rounding of the leakage.
+# Largest conductance of a seal over that of a film as thick as the clearance and as long as the bearing. A larger limit
+# would only increase the rounding error of the leakage.
 WIDE_OPEN = 1e8
 
 
 def seal_ends(grid: FilmGrid, kz: np.ndarray, pressure_scale: float) -> None:
     """Set the conductances of seals in those of a film's links in z, kz (n, m); ``pressure_scale`` in Pa.
 
-    None at the edges of arcs, whose oil does not come from the film.
+    Edges of arcs have no seals, because their oil does not come from the film.
     """
     for row, seal in zip((0, -2), grid.seals or (), strict=False):
         if seal is not None:
@@ -276,12 +276,12 @@ class Reservoirs:
     flow_scale : float
         m3/s per scaled flow of the film.
     law : PressureTransform or None
-        By which the film's unknown follows the pressure; None: it is the pressure.
+        Transform from the pressure to the film's unknown; None: the unknown is the pressure.
 
     Attributes
     ----------
     pressures : (k,) array
-        Of the last solution, Pa; the next one starts from them.
+        Pressures of the last solution, Pa, from which the next one starts.
     live : (k,) bool array
         Areas that have a balance.
     compliance : (k,) array
@@ -313,7 +313,7 @@ class Reservoirs:
         self.by_pressure, self.by_flow, self.size = np.zeros((3, len(masks)))
 
     def place(self) -> None:
-        """Take over the vertices of the areas from their masks."""
+        """Set the vertices of the areas from their masks."""
         areas = np.full(self.masks[0].shape, -1)
         for q, mask in enumerate(self.masks):
             areas[mask] = q
@@ -326,7 +326,7 @@ class Reservoirs:
         return np.bincount(self.of_vertices, field.reshape(-1)[self.at], len(self.masks))
 
     def transformed(self) -> tuple[np.ndarray, np.ndarray]:
-        """Pressures (k,) as the film's unknown, Pa, and their derivatives to the pressures."""
+        """Film's unknown (k,), Pa, at the areas' pressures, and its derivatives to the pressures."""
         if self.law is None:
             return self.pressures, np.ones(self.pressures.size)
         q = self.law.transform(self.pressures)
@@ -369,7 +369,7 @@ class Reservoirs:
         return balance
 
     def change(self, S: np.ndarray, cavity_pressure: float) -> np.ndarray:
-        """Return the change (k,) of the pressures of the last `balance` that evens it with flows of the slope S."""
+        """Return the change (k,) of the pressures that zeroes the last `balance`, if S is the slope of the flows."""
         change, at = np.zeros(self.pressures.size), self.live
         even = even_balances(*(part[at] for part in self.taken), S * self.flow_scale, cavity_pressure)
         change[at] = even - self.pressures[at]
@@ -385,13 +385,13 @@ class Reservoirs:
 
 @njit(cache=True)
 def even_balances(a, b, k, c, store, old, start, taken, S, lowest):
-    """Pressures (k,) at which areas have even balances, or the ``lowest``, with flows ``taken + S (p - start)``.
+    """Pressures (k,), at least ``lowest``, at which the balances are zero, with flows ``taken + S (p - start)``.
 
     ``a``, ``b``, ``k``, ``c``: coefficients of the balances; ``store``, ``old``: V / K over the step, and pressures at
     its start.
     """
     p = start.copy()
-    for _ in range(30):  # far more than Newton's method takes; what is left is for the caller to see
+    for _ in range(30):  # far more than Newton's method needs; the caller checks the remaining balance
         through = taken + S @ (p - start) + store * (p - old)
         by_flow, g = b + 2.0 * k * np.abs(through), a * p + (b + k * np.abs(through)) * through - c
         J = by_flow.reshape(-1, 1) * S + np.diag(a + by_flow * store)
@@ -421,7 +421,7 @@ def add_border(
         B^T, C and D, changed in place.
     """
     inside = (areas == np.arange(len(D))[:, None, None]).astype(float)
-    # what leaves every vertex by the areas' pressures, and what leaves the areas by every vertex's
+    # outflow of every vertex by the areas' pressures, and outflow of the areas by every vertex's pressure
     leaves, drawn, unknown, flat = slopes[4] * inside, np.zeros_like(inside), number >= 0, (len(D), number.size)
     for axis, (by_own, by_next) in enumerate((slopes[:2], slopes[2:4]), start=1):
         following = np.roll(inside, -1, axis)

@@ -1,11 +1,12 @@
-"""Rows of the film's grid on the axial edges of supply areas, or beside them, a column on a hole, and checks.
+"""Rows of the film's grid at the axial edges of supply areas, a column on a hole, and checks of supply areas.
 
-Circumferential grooves part the film into lands, which share the grid's intervals by their lengths. In a land with
-edges of other areas, every part between two edges gets as many of its intervals as the stretched grid has there; four
-at least where no area lies, which is the film between areas or at an end.
+Circumferential grooves divide the film into lands, and the grid's intervals are distributed over the lands by their
+lengths. In a land with edges of other areas, every part between two edges gets as many intervals as the stretched grid
+has there. Parts without an area, which are the film between areas or at an end, get at least four.
 
-In a cavity that conserves its oil the band behind an area is as wide as the control volumes of its rows: there they
-meet on its edges (`meeting_rows`), and on those of a hole.
+With a cavitation model that conserves oil, the band of oil downstream of an area is as wide as the control volumes of
+the area's rows. So rows are then placed such that control volumes end on the edges of areas, also on those of holes
+(`meeting_rows`).
 """
 
 from __future__ import annotations
@@ -27,9 +28,9 @@ from exudyn_ehd.film.supply.areas import (
 from exudyn_ehd.film.supply.cuts import RECIRCULATION
 from exudyn_ehd.status import ROUNDING, InputError
 
-# Intervals of a land, and of a part of one without an area.
+# Least number of intervals of a land, and of a part of a land without an area.
 LEAST = 4
-# What parts need more is taken from a land's longest part, down to so many.
+# Additional intervals for short parts are taken from a land's longest part, which keeps at least this number.
 KEPT = 6
 
 
@@ -51,13 +52,13 @@ def supply_rows(
         cuts = _edges_on(supply, low, high, length)
         edges += cuts[1:]
         counts += [max(LEAST, math.ceil(share - ROUNDING))] if len(cuts) == 2 else _parts(supply, cuts, share, stretch)
-    # of a film parted by grooves alone, in a groove
+    # if grooves are the only areas: in a groove
     alone = grooves and len(counts) == 2 * len(grooves) + 1
     middle = 1 + 2 * int(np.argmin([abs(sum(span)) for span in grooves])) if alone else _largest(counts, edges)
     if np.allclose(edges, -np.array(edges[::-1]), rtol=0.0, atol=ROUNDING * length):
-        # parts of one size may have been given different numbers: halves that are alike get rows that are
+        # parts of equal length may have got different numbers; symmetric halves must get symmetric rows
         counts, middle = [max(pair) for pair in zip(counts, counts[::-1], strict=True)], len(counts) // 2
-    # an even number: films that are their own mirror image have a row in the middle
+    # an even number, so that symmetric films have a row in the middle
     counts[middle] += sum(counts) % 2
     return rows_between([z / radius for z in edges], counts, stretch)
 
@@ -65,8 +66,11 @@ def supply_rows(
 def meeting_rows(
     supply: Sequence[SupplyArea], radius: float, length: float, n_z: int, stretch: float, columns: int
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return `supply_rows` with two rows about every edge of a groove along the axis or a pocket, and an odd number of
-    rows within a hole, whose control volumes are as wide as it; unchanged where other rows are in the way."""
+    """Return `supply_rows` with control volumes that end on the edges of areas.
+
+    Every edge of a groove along the axis or of a pocket gets a row on either side. A hole gets an odd number of rows,
+    whose control volumes together are as wide as the hole. Rows are unchanged where other rows prevent this.
+    """
     found = supply_rows(supply, radius, length, n_z, stretch)
     if found is None or all(isinstance(area, CircumferentialGroove) for area in supply):
         return found
@@ -95,7 +99,7 @@ def meeting_rows(
     while (few := 0 < fed[0] < LEAST) or 0 < z.size - 1 - fed[-1] < LEAST or z.size % 2 == 0:
         low, high = (0, fed[0]) if few else (fed[-1] if 0 < z.size - 1 - fed[-1] < LEAST else 0, z.size - 1)
         middles, widths = 0.5 * (z[1:] + z[:-1])[low:high], np.diff(z)[low:high]
-        # of several the one nearest to the mid-plane, on the side to which all rows lean
+        # among equal ones the one nearest to the mid-plane, then the one on the side of the mean of all rows
         order = -middles * np.sign(np.round(z.sum() / length, 9)), np.abs(middles), -np.round(widths / length, 9)
         k = low + int(np.lexsort(order)[0])
         z = np.insert(z, k + 1, 0.5 * (z[k] + z[k + 1]))
@@ -113,8 +117,10 @@ def _taken(lasting: Sequence[float], low: float, high: float, same: float) -> bo
 
 
 def _rows_of_hole(hole: Hole, spacing: float, column: float) -> tuple[np.ndarray, float]:
-    """Rows within a hole, and the width of their control volumes: as many as the grid has there, but so that the
-    outermost ones reach a column."""
+    """Rows within a hole, and the width of their control volumes.
+
+    Their number is that of the grid there, limited so that the outermost rows reach a column within the hole.
+    """
     r = 0.5 * hole.diameter
     count = 2 * round(r / spacing) + 1
     while count > 1 and (r * (1.0 - 1.0 / count)) ** 2 + (0.5 * column) ** 2 > r * r:
@@ -124,7 +130,7 @@ def _rows_of_hole(hole: Hole, spacing: float, column: float) -> tuple[np.ndarray
 
 
 def column_of_hole(supply: Sequence[SupplyArea], n_theta: int) -> float:
-    """Angle, less than a column, that brings a column of the grid to the first hole in the housing; 0 without one."""
+    """Shift of the grid, less than a column, that places a column on the housing's first hole; 0 without a hole."""
     holes = (area for area in supply if isinstance(area, Hole) and not area.rotating)
     return next((hole.angle % (2.0 * math.pi / n_theta) for hole in holes), 0.0)
 
@@ -158,7 +164,7 @@ def _parts(supply: Sequence[SupplyArea], edges: list[float], share: float, stret
     counts = []
     for k, part in enumerate(0.5 * share * np.diff(s)):
         z = 0.5 * (edges[k] + edges[k + 1])
-        # of two intervals the pressure beside the area is integrated to third order
+        # with two intervals the pressure next to the area is integrated to third order
         least = (2 if part > 0.3 else 1) if any(low < z < high for low, high in spans) else LEAST
         counts.append(max(least, math.ceil(part - ROUNDING)))
     while sum(counts) > share + 2.0:
@@ -170,16 +176,18 @@ def _parts(supply: Sequence[SupplyArea], edges: list[float], share: float, stret
 
 
 def _largest(counts: Sequence[int], edges: Sequence[float]) -> int:
-    """The part with most intervals; of several the one nearest to the mid-plane, of two the one on the side to which
-    all edges lean: a mirrored layout has the mirrored one."""
+    """Index of the part with most intervals; a mirrored layout has the mirrored part.
+
+    Among equal ones it is the part nearest to the mid-plane, then the one on the side of the mean of all edges.
+    """
     places = np.array(edges) / (edges[-1] - edges[0])
     centres = np.round(0.5 * (places[1:] + places[:-1]), 9)
     return int(np.lexsort((-centres * np.sign(np.round(places.sum(), 9)), np.abs(centres), -np.array(counts)))[0])
 
 
-# Shortest film beside a groove or at an end, over the bearing's length.
+# Shortest film next to a groove or at an end, over the bearing's length.
 SHORTEST_LAND = 1e-3
-# Intervals of the film between two areas in theta.
+# Least number of intervals of the film between two areas in theta.
 LEAST_BETWEEN = 3
 
 
@@ -191,7 +199,7 @@ def check_supply(
     around: bool,
     end_pressures: tuple[float, float] | None,
 ) -> None:
-    """Raise `InputError` for areas that the film can't have.
+    """Raise `InputError` for areas that the film does not support.
 
     Parameters
     ----------
@@ -241,7 +249,7 @@ def check_on_arcs(supply: Sequence[SupplyArea], arcs: np.ndarray, radius: float,
 
 
 def check_depths(supply: Sequence[SupplyArea], clearance: float) -> None:
-    """Raise `InputError` for areas too shallow for a uniform pressure, which shear their oil as much as lands."""
+    """Raise `InputError` for areas too shallow for a uniform pressure, whose shear would be that of a film."""
     least = RECIRCULATION * clearance
     for k, area in enumerate(supply):
         if area.depth is not None and area.depth < least:
@@ -253,7 +261,7 @@ def check_depths(supply: Sequence[SupplyArea], clearance: float) -> None:
 
 
 def _check_extent(k: int, area: SupplyArea, radius: float, length: float) -> None:
-    """Refuse holes wider than the journal, and other areas that are far longer than the bearing."""
+    """Raise `InputError` for holes wider than the journal, and for other areas far longer than the bearing."""
     _, _, _, half, reach = outline(area, radius)
     if reach > radius or length < half < math.inf:
         size = f"diameter of {2.0 * radius:g}" if isinstance(area, Hole) else f"length of {length:g}"
@@ -263,13 +271,13 @@ def _check_extent(k: int, area: SupplyArea, radius: float, length: float) -> Non
 
 
 def _check_columns(k: int, area: SupplyArea, radius: float, step: float, around: bool) -> None:
-    """Refuse areas that may lie between two columns, and grooves that meet themselves around the journal."""
+    """Raise `InputError` for areas that fit between two columns, and for grooves that leave no film around."""
     if isinstance(area, CircumferentialGroove):
         return
     width = area.diameter / radius if isinstance(area, Hole) else area.width_angle
     low, high = (area.angle - 0.5 * width) / step, (area.angle + 0.5 * width) / step
     if isinstance(area, Hole) and around and not area.rotating:
-        return  # holes of any size feed the nearest vertex
+        return  # a hole of any size feeds at least the nearest vertex
     between = width < step if area.rotating else math.floor(high + ROUNDING) < math.ceil(low - ROUNDING)
     if between:
         lies = "is narrower than the step between" if area.rotating else "lies between"
@@ -289,7 +297,7 @@ def _require_between(what: str, angle: float, step: float) -> None:
 
 
 def _check_ends(k: int, area: SupplyArea, length: float, end_pressures: tuple[float, float]) -> None:
-    """Refuse areas that reach an end with another pressure."""
+    """Raise `InputError` for areas that reach an end whose pressure is another one."""
     low, high = axial_span(area)
     for land, pressure in zip((low + 0.5 * length, 0.5 * length - high), end_pressures, strict=True):
         if land < SHORTEST_LAND * length and (area.supply is not None or pressure != area.pressure):
@@ -301,7 +309,7 @@ def _check_ends(k: int, area: SupplyArea, length: float, end_pressures: tuple[fl
 
 
 def _check_lands(supply: Sequence[SupplyArea], length: float) -> None:
-    """Refuse circumferential grooves that leave no film beside or between them."""
+    """Raise `InputError` for circumferential grooves that leave no film next to or between them."""
     before = -0.5 * length
     for low, high in [*groove_spans(supply), (0.5 * length, math.inf)]:
         if low - before < SHORTEST_LAND * length:
@@ -314,9 +322,9 @@ def _check_lands(supply: Sequence[SupplyArea], length: float) -> None:
 
 
 def _check_pair(i: int, first: SupplyArea, k: int, second: SupplyArea, radius: float, step: float) -> None:
-    """Refuse areas on one surface that overlap at different pressures, or with hardly a film between them."""
+    """Raise `InputError` for areas on one surface that overlap at different pressures or nearly touch."""
     if first.rotating != second.rotating:
-        return  # they pass each other; where they overlap the first one's pressure counts
+        return  # areas on different surfaces pass each other; where they overlap, the first one's pressure acts
     (angle1, place1, x1, z1, r1), (angle2, place2, x2, z2, r2) = outline(first, radius), outline(second, radius)
     apart = max(0.0, radius * abs(math.remainder(angle1 - angle2, 2.0 * math.pi)) - x1 - x2)
     along = max(0.0, abs(place1 - place2) - z1 - z2)

@@ -13,8 +13,8 @@ F_5/2 comes from cubic Hermite interpolation on 1/64 sigma with the exact values
 the series ``(-u)^(5/2) (1 + 15/8 u^-2 - 15/128 u^-4 - 75/1024 u^-6)``, so that surfaces pressed into each other still
 push back. Below u = -64 the first cubic goes on, 0.5 % too stiff at -128.
 
-Average gap of rough surfaces: what a film sees between asperities
-------------------------------------------------------------------
+Average gap of rough surfaces, which replaces the nominal gap in the film
+-------------------------------------------------------------------------
 Two rough surfaces with a nominal gap h and Gaussian combined roughness s of standard deviation sigma leave, where peaks
 that would overlap are flattened, the average gap (Patir and Cheng, J. Lubrication Technology 100 (1978) 12, with a
 Gaussian)
@@ -48,7 +48,7 @@ from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, requi
 
 # Beyond this many sigma the average gap equals the nominal one (to 2e-13 sigma).
 SMOOTH_BEYOND = 7.0
-# Beginning of the hint on a composite roughness that can't be meant.
+# Beginning of the hint on a composite roughness outside the plausible range.
 ROUGHNESS = "it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with"
 
 

@@ -1,7 +1,7 @@
-"""Contacts, which press where surfaces touch, limiters of the gap that the film sees, and wear.
+"""Contact pressure of touching surfaces, limiters of the film's gap, and wear.
 
-A contact presses with ``level F(h / unit)``. F is a cubic Hermite spline through equidistant knots, falls and is
-convex, ends at its last knot with zero slope, and goes on as its first cubic below its first knot.
+The pressure of a contact is ``level F(h / unit)``. F is a cubic Hermite spline through equidistant knots. It decreases
+with the gap, is convex, and is zero with zero slope at its last knot. Below its first knot the first cubic continues.
 
 Fields are (n, m) arrays on the film grid; gaps are divided by the clearance, contact pressures in Pa.
 
@@ -14,20 +14,20 @@ For a gap h below the onset h0, with s = h / h0:
   share: equal to s up to second derivatives at s = 1 and never below ``residual h0``,
   so that the Reynolds equation keeps a solution while surfaces press on each other.
 
-The wall is a regularisation with one stiffness, not a model of asperities, and it has no friction of its own. Where it
-acts, the film sees another gap than the one on whose slope its pressure rests. The rest of the slope is the solids',
-which the journal meets along its normal, without a torque on it: see closed gaps in
+The wall is a regularisation with one stiffness, not a model of asperities, and it has no friction. Where it acts, the
+film's gap changes less along the surface than the gap of the solids. The film's pressure on this difference of slopes
+acts along the normal of the journal and has no torque about its axis: see closed gaps in
 `exudyn_ehd.film.surfaces.patir_cheng`.
 
-Wear of the bore after Archard: what asperities rub off deepens the gap
------------------------------------------------------------------------
+Wear of the bore after Archard, which adds to the gap
+-----------------------------------------------------
 ``dh/dt = k p v`` with the asperity contact's pressure p, the sliding speed v and the specific wear rate k in m2/N (k =
 K / H with Archard's dimensionless K and the softer surface's hardness H). Source: J. F. Archard, J. Applied Physics 24
 (1953) 981.
 
-The depth belongs to the accepted history: a step sees the depth at its start, and its own wear is added at its end with
-the pressure and speed found there (explicit in the gap, first order in the step; wear per step is a tiny share of the
-roughness).
+The depth belongs to the accepted history: the film of a step uses the depth at its start. The wear of the step is added
+at its end, with the pressure and speed found there (explicit in the gap, first order in the step; wear per step is a
+tiny share of the roughness).
 
 Wrench of contact pressures and of their friction, and its gradient
 -------------------------------------------------------------------
@@ -49,26 +49,27 @@ from numba import njit
 
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, ROUNDING, Checked, require_number
 
-# Of the gap on an elastic element: Newton steps at most, and the last one over the gap at which the contact begins. The
-# slope of the pressure is that before the last step.
+# Solution for the gap on an elastic element: most Newton steps, and tolerance, which is the size of the last step over
+# the gap at which the contact begins. The slope of the pressure is that before the last step, so that a larger
+# tolerance makes it less exact.
 MOST_STEPS, LAST_STEP = 60, 1e-13
 
 
 class GapLimiter(Protocol):
-    """Keeps the gap that the film sees above zero where surfaces touch.
+    """Limiter that keeps the film's gap above zero where surfaces touch.
 
     Attributes
     ----------
     limits_below : float
-        Scaled gap from which on the film sees the gap itself.
+        Scaled gap above which the film's gap is the gap of the surfaces.
     """
 
     limits_below: float
 
     def film_gap(self, gaps: np.ndarray, slopes: np.ndarray, bends: np.ndarray) -> None:
-        """Replace the ``gaps`` below ``limits_below`` by the film's, with their first two derivatives, in place.
+        """Replace ``gaps`` below ``limits_below`` by the film's gaps, in place, and set their first two derivatives.
 
-        Contiguous arrays of one shape; derivatives of other gaps are left as they are.
+        Contiguous arrays of one shape; derivatives of other gaps are not changed.
         """
 
     def limit(
@@ -82,12 +83,12 @@ class GapLimiter(Protocol):
     ) -> None:
         """Replace gaps at vertices (H) and links (HF) and the gap's rate (H_t) by the film's, in place.
 
-        ``slope_out`` and ``face_slope_out`` take d(film gap)/d(gap), ``bend_out`` the second derivative times the
-        gap's rate.
+        ``slope_out`` and ``face_slope_out`` are set to d(film gap)/d(gap), ``bend_out`` to the second derivative times
+        the gap's rate.
         """
         slope_out[:], bend_out[:], face_slope_out[:] = 1.0, 0.0, 1.0
         self.film_gap(H, slope_out, bend_out)
-        # rates of a step that closes the gap may be infinite: its residual refuses it
+        # rates of a step that closes the gap may be infinite; Newton's method then rejects it by its residual
         with np.errstate(invalid="ignore"):
             bend_out *= H_t
             H_t *= slope_out
@@ -95,12 +96,12 @@ class GapLimiter(Protocol):
 
 
 class Contact:
-    """A pressure between the surfaces that depends on the true gap alone.
+    """Contact pressure between the surfaces, which depends on their gap alone.
 
     Parameters
     ----------
     unit : float
-        Scaled gap of one unit of the spline.
+        Scaled gap for a unit of the spline's argument.
     level : float
         Contact pressure at F = 1, Pa.
     ends : (float, float)
@@ -115,9 +116,10 @@ class Contact:
     Attributes
     ----------
     presses_below : float
-        Scaled gap from which on there is no pressure.
+        Scaled gap above which there is no pressure.
     land : (n, m) array or float
-        Share of a vertex outside of supply areas, in which nothing touches: factor of the pressure.
+        Share of a vertex's control volume outside of supply areas, as a factor of the pressure: supply areas do not
+        touch the journal.
     """
 
     land: np.ndarray | float = 1.0
@@ -148,7 +150,7 @@ class Contact:
     ) -> None:
         """Solve ``G = X + compliance pressure(G) / scale`` on Winkler elements for G (n, m), in place from any start.
 
-        Outputs: the pressure there, Pa, and its slope over ``scale``, that on the land.
+        Outputs: the pressure at G, Pa, and its slope over ``scale``, both on the land.
         """
         solve_contact_gap(X, compliance / scale, scale, self.presses_below, *self.law, G, P_out, slope_out)
         inside = np.less(self.land, ROUNDING)
@@ -189,10 +191,10 @@ def contact_pressure(H, reach, first, step, knots, P_out, slope_out):
 
 @njit(cache=True)
 def solve_contact_gap(X, compliance, scale, reach, first, step, knots, G, P_out, slope_out):
-    """Gap on Winkler elements that a contact presses: the root of ``G - X - compliance p(G)``, in place from any start.
+    """Solve ``G - X - compliance p(G) = 0``, the gap on Winkler elements under a contact, in place from any start.
 
     p falls and is convex, so that Newton's method gets below the root in one step, never below X, and then rises to it.
-    With the pressure there, and its derivative to G over ``scale``.
+    Also sets the pressure at G, and its derivative to G over ``scale``.
     """
     gap, P, slope = G.reshape(-1), P_out.reshape(-1), slope_out.reshape(-1)
     for k, x in enumerate(X.reshape(-1)):
@@ -261,7 +263,7 @@ class WallContact(Contact, GapLimiter):
         super().__init__(self.onset, wall.pressure, (0.0, 1.0), np.array([[1.0, -2.0], [0.0, 0.0]]))
 
     def film_gap(self, gaps: np.ndarray, slopes: np.ndarray, bends: np.ndarray) -> None:
-        """Gap ``onset g(s)`` with its derivatives; as `GapLimiter`."""
+        """Gap ``onset g(s)`` with its derivatives; arguments as for `GapLimiter`."""
         wall_gap(gaps, self.onset, 1.0 - self.residual, slopes, bends)
 
 
@@ -318,7 +320,7 @@ class ArchardWear(Checked):
     }
 
     def growth(self, pressure: np.ndarray, speed: float, step: float) -> np.ndarray:
-        """Depth, m, that contact pressures, Pa, wear off in a step, s, at a sliding speed, m/s."""
+        """Depth of wear, m, by contact pressures, Pa, in a step, s, at a sliding speed, m/s."""
         depth: np.ndarray = pressure * (self.wear_rate * self.acceleration * step * speed)
         return depth
 
@@ -335,7 +337,7 @@ def slip(motion: np.ndarray, R: float, transition: float) -> tuple[np.ndarray, n
 
 
 def _traction_weights(traction: np.ndarray, R: float) -> np.ndarray:
-    """Weights (6, 5) of the integrals in the wrench of a traction (2,) per pressure, against theta and z."""
+    """Weights (6, 5) of the integrals in the wrench of a traction (2,) over the pressure, towards -theta and -z."""
     a, b = R**2 * traction
     return np.array(
         [

@@ -1,12 +1,12 @@
-"""Elastic liner: a layer on a stiff housing that deflects by itself under every point, inside the film solve.
+"""Elastic liner: a layer on a stiff housing, whose deflection at a point depends on the pressure at that point only.
 
 A layer of thickness t on a stiff housing, pressed by p without sliding sideways
 (plane strain in both directions along the surface), deflects by
 
     delta = K_nu t p / E,    K_nu = (1 + nu)(1 - 2 nu) / (1 - nu),
 
-the Winkler model: right for layers thinner than the contact is wide, and without meaning
-for incompressible ones. The film on it is that of `exudyn_ehd.film.solvers.liner.film`.
+the Winkler model. It is right for layers thinner than the width of the contact, and wrong for
+incompressible layers. `exudyn_ehd.film.solvers.liner.film` solves the film on a liner.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ class ElasticLiner(Checked):
     with the film; ``compliance`` = (1 + nu) (1 - 2 nu) / (1 - nu) t / E.
 
     Contact pressure deflects the liner too: journals may sink into soft liners, also at their edges, by more than the
-    clearance; under `ElrodAdams` such a film can starve. It works with every law and effect but not with the reduced
-    films (such as `ShortBearing`). With `BarusPressure` or `RoelandsPressure` it gives the classical
-    elastohydrodynamic film, in which high viscosity and deflection keep each other up.
+    clearance; under `ElrodAdams` such a film can starve. Liners work with every law and effect, but not with the
+    reduced films (such as `ShortBearing`). With `BarusPressure` or `RoelandsPressure` the result is the classical
+    elastohydrodynamic film, in which high viscosity and deflection increase each other.
 
     Parameters
     ----------

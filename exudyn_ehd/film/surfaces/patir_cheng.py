@@ -19,18 +19,18 @@ sigma / 100) and
 
     phi_fs = (sigma_1^2 - sigma_2^2) / sigma^2 Phi_fs,    Phi_fs = A3 H^a4 exp(-a5 H + a6 H^2) for H <= 7,
 
-the larger stress on the smoother surface. Pressure ripples push on the slopes of the rougher one, which makes up for
-the difference: momentum of the film. Where one surface is smooth its shear is all there is, so that the tangential
-force on either is
+the larger stress on the smoother surface. Pressure ripples push on the slopes of the rougher surface, and this force
+equals the difference of the stresses: both surfaces get the same tangential force, by the film's momentum balance. On a
+smooth surface shear is the only tangential force, so that the tangential force on either surface is
 
     mu U / h (phi_f + Phi_fs),
 
 and as both factors are linear in the variances (heights of the two surfaces are independent) that holds for every share
 of the two. For parallel ridges across the motion it is 1 + 4 (sigma/h)^2, and 1 + (sigma/h)^2 along it (exact for small
-roughness). Beyond H = 7 Phi_fs falls on by the power that it has there. Under a pressure gradient the tangential
-forces, shear and ripples together, are ``-(h_T +- sigma phi_s) / 2 dp/dx`` by reciprocity, with
-``phi_fp h = h_T - sigma Phi_s`` of the second paper (drag, below). Where peaks touch (h below 2 sigma) the
-pressure is taken to act on the whole area, the flow to have the open part of it.
+roughness). Beyond H = 7 Phi_fs is the power of H that continues the fit with its slope. Under a pressure gradient the
+tangential forces, shear and ripples together, are ``-(h_T +- sigma phi_s) / 2 dp/dx`` by reciprocity, with ``phi_fp h =
+h_T - sigma Phi_s`` of the second paper (drag, below). Where peaks touch (h below 2 sigma) the pressure is taken to act
+on the whole area, the flow to have the open part of it.
 
 The film is computed in h_T, so all factors are tabulated over ``y = 1 / (1 + h_T / (8 sigma))``: the pressure flow as
 phi = phi_x h^3 / h_T^3, the shear flow as psi = sigma Phi_s / h_T, the friction as
@@ -47,16 +47,16 @@ anything. So a pressure gradient pulls the surfaces, shear and pressure on their
     f_1 = -(h_T + sigma phi_s) / 2 dp/dx,        f_2 = -(h_T - sigma phi_s) / 2 dp/dx        per area,
 
 the rougher one more; the sum is what the pressure does on the film's cross section, whatever phi_s. With one surface
-smooth the force on it is its shear alone: ``phi_fp h = h_T - sigma Phi_s`` of Patir and Cheng. What departs from equal
-shares, ``-+ sigma phi_s / 2 dp/ds`` in both directions, is summed over the links as the carriers' part of the flow is,
-so that work and heat match link by link: ``E_x = sum (carrier - gap) (P_i - P_i+1) width``; its torque on the journal
-is 6 mu R^4 / c E_x, its axial force 6 mu R^3 / c E_z.
+smooth the force on it is its shear alone: ``phi_fp h = h_T - sigma Phi_s`` of Patir and Cheng. The difference from
+equal shares, ``-+ sigma phi_s / 2 dp/ds`` in both directions, is summed over the links as the carriers' part of the
+flow is, so that work and heat agree on every link: ``E_x = sum (carrier - gap) (P_i - P_i+1) width``; its torque on the
+journal is 6 mu R^4 / c E_x, its axial force 6 mu R^3 / c E_z.
 
-Closed gaps. Where surfaces touch, the film has a gap h (a limiter's, an average one) that changes less than the gap g
-between them, ``dh = h' dg``. The pressure presses on the whole area, on the journal along its normal; the film pulls
-either surface by ``-h/2 dp/dx``, and what the slopes leave, ``p (1 - h') dg/dx``, goes from solid to solid as contact
-pressure does, without a torque on the journal about its own axis. That is the same sum with g for the gap,
-``E_x = sum (carrier - g) (P_i - P_i+1) width``, the carrier being that of h. Then what sliding puts in is heat,
+Closed gaps. Where surfaces touch, the gap h of the film (from a limiter, or the average gap) changes less than the gap
+g of the surfaces, ``dh = h' dg``. The pressure acts on the whole area, on the journal along its normal. The film pulls
+either surface by ``-h/2 dp/dx``. The remaining force ``p (1 - h') dg/dx`` is transmitted between the solids like
+contact pressure, and has no torque on the journal about its axis. So the torque is that of the same sum with g as the
+gap, ``E_x = sum (carrier - g) (P_i - P_i+1) width``, with the carrier of h. Then the work of sliding equals the heat,
 however closely the surfaces touch.
 
 Symbols of `exudyn_ehd.film.loads`. Values on links are (n, m); the last column of those in z, behind which there is
@@ -95,7 +95,8 @@ SHEAR_CUTOFF = 0.01
 FLOW_BLEND = 0.5
 SHEAR_BLEND = 0.15
 TABLE_STEPS = 2048
-# The gap, in sigma, at the middle of the tables: half of the knots lie above, where factors fall off slowly.
+# Gap, in sigma, at the middle of the tables: half of the knots are for larger gaps, where the factors vary slowly. A
+# larger value places more knots at small gaps.
 TABLE_MIDDLE = 8.0
 
 
@@ -151,7 +152,7 @@ class PatirCheng(Checked):
 
 
 def pressure_flow_factor(H: np.ndarray, pattern: float) -> np.ndarray:
-    """phi_x(H, gamma); phi_z is the one of 1/gamma."""
+    """phi_x(H, gamma); phi_z(H, gamma) is phi_x(H, 1/gamma)."""
     C, r = _constants(pattern)[:2]
     H = np.asarray(H, dtype=float)
     return 1.0 - C * np.exp(-r * H) if pattern <= 1.0 + 1e-9 else 1.0 + C * H**-r
@@ -230,7 +231,7 @@ def flow_tables(pattern: float, residual: float) -> tuple[np.ndarray, np.ndarray
 
 
 def nominal_gap(t: np.ndarray, residual: float) -> np.ndarray:
-    """h / sigma for average gaps t = h_T / sigma, by bisection; -38 for all that is closed."""
+    """h / sigma for average gaps t = h_T / sigma, by bisection; -38 for closed gaps."""
     t = np.asarray(t, dtype=float)
     low, high = np.full(t.shape, -38.0), t + 1.0
     for _ in range(80):

@@ -1,4 +1,4 @@
-"""Surfaces that are not circular cylinders: what their shape adds to the gap.
+"""Profiles: depths of surfaces that are not circular cylinders, as additions to the gap.
 
 A profile is a depth d(theta, z) in m that adds to the gap of the circular cylinders: ``h = c - e . n + d``; d > 0 opens
 the gap, theta counts from x about z, z from the bearing's mid-plane. Profiles are fixed in the housing: an out-of-round
@@ -32,8 +32,8 @@ from exudyn_ehd.status import (
     warn_user,
 )
 
-# Places between two vertices where a profile is compared with the straight line that a film takes, as shares of their
-# distance, and the difference to warn from, as a share of the clearance.
+# Places between two vertices, as shares of their distance, at which a profile is compared with the straight line
+# between the vertices, and the difference, as a share of the clearance, above which there is a warning.
 BETWEEN, MISSED = (0.21, 0.47, 0.83), 0.02
 
 
@@ -88,7 +88,7 @@ class Crown(Checked):
     drop : float
         Additional gap at both ends of the bearing, m; negative: waisted.
     exponent : float, default 2.0
-        At least 1; 2 is a parabola, larger ones leave more of the cylinder.
+        At least 1; 2 is a parabola, with a larger exponent more of the length remains nearly cylindrical.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""End faces with oil films as a scene names them, and their grid: an annulus in the logarithm of its radius.
+"""Description of end faces with oil films, and their grid: an annulus in the logarithm of its radius.
 
 With s = ln(r / R), R = sqrt(r_i r_o), Reynolds' equation of a face, times r^2,
 
@@ -47,9 +47,9 @@ from exudyn_ehd.status import (
     require_vector,
 )
 
-# Attributes of a bearing by name.
+# Names of attributes of a bearing.
 BearingOptions: TypeAlias = Mapping[str, Any]
-# Pads of a face up to which the error of its default grid was measured.
+# Largest number of pads of a face for which the error of its default grid was measured.
 MOST_PADS = 16
 
 
@@ -200,7 +200,7 @@ class ThrustFaces(Checked):
     Raises
     ------
     InputError
-        For values that can't be meant.
+        For values outside their ranges.
 
     Examples
     --------
@@ -235,7 +235,7 @@ class ThrustFaces(Checked):
 
     @property
     def grid(self) -> tuple[int, int, np.ndarray | None, None]:
-        """Arguments of the `Annulus` of a face behind its radii."""
+        """Arguments of the `Annulus` of a face that come after its radii."""
         return *face_grid(self), None
 
     def __post_init__(self) -> None:
@@ -267,7 +267,7 @@ class ThrustFaces(Checked):
 
 
 def check_faces(bearing: BearingOptions) -> None:
-    """Refuse faces that do not fit the bearing around them, and what their films would leave out.
+    """Raise `InputError` for faces that do not fit their bearing, and for options that their films do not support.
 
     Parameters
     ----------
@@ -300,9 +300,9 @@ def check_faces(bearing: BearingOptions) -> None:
 
 
 def check_shear_law(where: str, oil: Lubricant) -> None:
-    """Refuse a law by gap and sliding speed, which has one radius.
+    """Raise `InputError` for a shear law by gap and sliding speed, which holds at one radius only.
 
-    Others follow the shear rate at every height of the film, and so at every radius.
+    Other laws depend on the shear rate at every height of the film, and so hold at every radius.
     """
     if oil.shear_law is not None and not hasattr(oil.shear_law, "relaxation_time"):
         raise InputError(
@@ -317,10 +317,10 @@ COLUMNS, ROWS = 96, 10
 # Columns on the ring's width, and columns of a pad. The error falls with their inverse square, and the time grows in
 # proportion: `ThrustFaces` states the errors of these numbers, measured in tests/film/thrust/test_annulus.py.
 ON_WIDTH, OF_PAD = 12.0, 16
-# Fewest columns of a land or a step, and of a taper, but no more than 3/8 of the pad's. Fewer miss the slope of short
-# tapers and the damping of short lands, more leave too few to the rest of the pad.
+# Fewest columns of a land or a step, and of a taper, but no more than 3/8 of the pad's columns. With fewer, the slope
+# of short tapers and the damping of short lands are wrong; with more, the rest of the pad has too few.
 LEAST, OF_TAPER = 5, 6
-# Most columns, beyond which narrow rings have fewer than ON_WIDTH.
+# Most columns; this limit gives narrow rings fewer than ON_WIDTH columns on their width.
 MOST_COLUMNS = 320
 # Rows: ROWS_BESIDES, and 2 pi times the ring's width over the length of a pad, or of one whose recess has the share
 # SHORT; at most MOST_ROWS. More lower the error of the flows at the radii.
@@ -355,8 +355,8 @@ def pad_columns(profile: TaperLand | StepLand, count: int) -> np.ndarray:
 class Annulus:
     """Grid of an annulus, or of a sector of one, with its weights; lengths over R.
 
-    The pressure at both edges of a sector is prescribed, and has to be that at its radii: ``along`` and ``across``
-    count no flow along its edges.
+    The pressure at both edges of a sector is prescribed, and has to be that at its radii, because ``along`` and
+    ``across`` omit flow along its edges.
 
     Parameters
     ----------
@@ -377,13 +377,13 @@ class Annulus:
     r : (m,) array
         Radii of the rows.
     weight : (n, m) array
-        Of integrals over the area.
+        Weights of integrals over the area.
     square : (m,) array
-        See the module.
+        Weights in place of r^2 at the vertices, see the module's docstring.
     sides : (2, n, 1) array
-        Share of a vertex' control volume behind and ahead of it in theta.
+        Shares of a vertex's control volume before and after the vertex in theta.
     link_weight : (n, m) array
-        Of integrals over the area from values on the links i -> i+1.
+        Weights of integrals over the area, for values on the links i -> i+1.
     moments, link_moments : (3, n, m), (4, n, m) arrays
         1, x and y at the vertices; 1, x, y and r^2 on the links i -> i+1.
     along, across : (3, n, m) arrays
@@ -422,7 +422,7 @@ class Annulus:
         self.link_moments = np.array([flat, np.outer(cos_f, r), np.outer(sin_f, r), flat * r**2])
         turn = np.broadcast_to(self.square * width, self.grid.shape)
         self.along = np.array([turn, -np.outer(sin_f, r * width), np.outer(cos_f, r * width)])
-        # with which an even pressure pulls at no vertex of an even gap
+        # so that a uniform pressure in a uniform gap has no force on a vertex
         between = np.append(0.5 * (r[0] + r[1]) + np.cumsum(r * width)[:-1] - r[0] * width[0], 0.0)
         outward = np.array([np.zeros_like(cos_f), sin_f - np.roll(sin_f, 1), np.roll(cos_f, 1) - cos_f])
         self.across = outward[:, :, None] * between
@@ -493,10 +493,10 @@ class AnnularFlow(FluxEffect):
         self.edges, self.skew = 3.0 * (sides * steps**2).sum(axis=0), (sides * steps**3).sum(axis=0)
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
-        """Weigh the carriers in theta, and add to the conductances along the radius, with their derivatives."""
+        """Weight the carriers in theta, and add to the conductances along the radius, with their derivatives."""
         flux.cx[:] = gap_x * self.square
         flux.cx_h[:] = self.square
         added = gap_z * self.edges + self.skew
-        # negative only where a collar is pressed into one side
+        # negative only where a collar is pressed into one of both gaps
         flux.gz[:] += np.maximum(added, 0.0)
         flux.gz_h[:] += self.edges * (added > 0.0)

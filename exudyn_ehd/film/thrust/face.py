@@ -9,9 +9,9 @@ and the collar slides past with U = omega e_z x r + u, u the velocity of its poi
 
     div(h^3 / (12 mu) grad p) = U . grad h / 2 + dh/dt,          p given at r_i and r_o,
 
-takes the turn through its links (`exudyn_ehd.film.thrust.annulus`) and the shift u, which is smaller by clearance over
-radius, as a rate ``u . grad h / 2``. Normals are fixed in the housing. On the collar act p along s e_z and, in the
-plane, the shear and the pressure on the collar's own slope,
+contains the rotation omega as Couette flow of the links (`exudyn_ehd.film.thrust.annulus`). The shift u, which is
+smaller by clearance over radius, enters as a rate of the gap, ``u . grad h / 2``. Normals are fixed in the housing. On
+the collar act p along s e_z and, in the plane, the shear and the pressure on the slope of the collar,
 
     f = -mu U / h - h/2 grad p - p grad(h - d),
 
@@ -25,8 +25,8 @@ Laws of the oil. With a pressure or density law the solver's unknown is q, dq = 
 (`exudyn_ehd.film.lubricant.density`), whose balance is that of a film of constant viscosity; N to E take p(q), S the
 viscosity of every vertex. Turbulence and shear thinning follow the sliding at their radius, omega r: a turbulent link
 has the Reynolds number rho omega r h / mu, and with x = r / R a shear rate is that of a film of the gap h / x at the
-radius R, in gradients along theta and s too. The shift u, smaller by clearance over radius, meets their shear factor
-and adds nothing to them. The mean of the shear on both walls is their factor times mu U / h, its difference h grad p.
+radius R, in gradients along theta and s too. The shear of the shift u has the same factor; the factor does not depend
+on u. The mean of the shear on both walls is the factor times mu U / h, its difference h grad p.
 """
 
 from __future__ import annotations
@@ -72,9 +72,9 @@ class FaceState:
     ----------
     status : Status
     wrench : (6,) array
-        On the journal, moment about the face's centre, N and Nm; nan without a film.
+        Wrench on the journal, moment about the face's centre, N and Nm; nan without a film.
     minimum_gap, peak_pressure, power_loss, contact_load : float
-        m; Pa; W that film and contact turn into heat, or work on the oil that they press out; N.
+        m, Pa, W, N. The power loss is heat of film and contact, and work on the oil that they press out.
     """
 
     status: Status
@@ -94,7 +94,7 @@ class FaceFilm:
     side : int
         1 for the upper face and for a pad, -1 for the lower face.
     closure : Closure
-        One that does not conserve mass; Swift-Stieber's line lies on vertices where there are pads.
+        Closure that does not conserve mass; on pads the rupture line of Swift-Stieber lies on vertices.
     oil : Lubricant
     pressures : (float, float)
         At the inner and the outer radius, Pa.
@@ -126,7 +126,7 @@ class FaceFilm:
         # columns of pads are not equal
         has_pads = faces.profile is not None or faces.grid[3] is not None
         if has_pads and closure.line_in_cells and not (closure.clips or closure.conserves_mass):
-            # a step takes oil away on an edge itself: no parabola of pressure ends in the cells behind it
+            # at a step oil is lost on the edge itself, so that no parabola of pressure ends in the cells downstream
             self.closure = closure = replace(closure, line_in_cells=False)  # type: ignore[type-var]
         self.annulus = a = Annulus(faces.inner_radius, faces.outer_radius, *faces.grid)
         self.wall = None if faces.contact is None else WallContact(faces.contact, faces.clearance)
@@ -222,7 +222,7 @@ class FaceFilm:
         return self.solver.H * self.scales.c
 
     def _set_gap(self, motion: np.ndarray) -> float:
-        """Gaps and the weighed rate into the solver's buffers; the smallest scaled gap of the surfaces."""
+        """Write gaps and weighted rate into the solver's buffers; return the smallest scaled gap of the surfaces."""
         s, k, a = self.solver, self.scales, self.annulus
         scale = np.array([1.0, k.R, k.R]) / k.c
         self.motion = motion
@@ -241,7 +241,7 @@ class FaceFilm:
         return smallest
 
     def _press(self, wall: WallContact) -> None:
-        """Pressure of a wall that touches, and the film's gap and rate there in place of the surfaces'."""
+        """Set the pressure of a touching wall, and replace gap and rate of the surfaces there by the film's."""
         s, shape = self.solver, self.solver.H.shape
         self.contact, self.contact_slope, self.bend = np.zeros((3, *shape))
         self.slope, self.face_slope, pressure, slope = np.ones((4, *shape))
@@ -303,7 +303,7 @@ class FaceFilm:
         gradient = self._gradients()
         out = self._weights() @ gradient[:6]
         N, X, Y = (k.force * self.loads * np.array([1.0, R, R])).tolist()
-        # the weights' own dependence on the tilt
+        # dependence of the weights on the tilt
         out[0, 1] += n * N
         out[1, 2] += n * N
         out[5, 1] -= n * Y
@@ -320,7 +320,7 @@ class FaceFilm:
     def _gradients(self) -> np.ndarray:
         """Gradients (6, 9) of N, X, Y and E to the motion, SI units; contact included.
 
-        Behind them those of S (3, 9) through the viscosity where it follows the film.
+        If the viscosity depends on the film, those of S (3, 9) through the viscosity follow.
         """
         a, oil = self.annulus, self.fields
         fields = np.concatenate((a.moments * a.weight, self.rows)) * (1.0 if oil.P_q is None else oil.P_q)
@@ -383,7 +383,7 @@ def sliding_law(oil: Lubricant, turbulence: NgPan | Hirs | None, annulus: Annulu
     R, r = annulus.scale, annulus.r
     if turbulence is not None:
         turbulent = turbulence.bound(R, clearance, oil.density, oil.viscosity, plane=True)
-        # a Reynolds number is one at the radius R in an oil that is thinner by r
+        # the Reynolds number at r R is that at the radius R in an oil whose viscosity is divided by r
         turbulent.field = ViscosityField()
         return turbulent
     if (thinning := oil.shear_law and oil.shear_law.bound(R, clearance)) is not None:

@@ -1,4 +1,4 @@
-"""Tilting thrust pads as a scene names them, and the grid of a sector.
+"""Description of tilting thrust pads, and the grid of a sector.
 
 A pad is a sector of an annulus in its own frame: z the bearing's axis from the pads to the collar, x the radial line
 through the pivot, the origin on the axis in the plane of the pads. So the pivot is at theta = 0, the leading edge,
@@ -58,7 +58,7 @@ class TiltingThrustPads(Checked):
     Parameters
     ----------
     inner_radius, outer_radius : float
-        Of the pads, m.
+        Radii of the pads, m.
     pads : int
         Number of pads.
     extent : float
@@ -71,7 +71,7 @@ class TiltingThrustPads(Checked):
         Gap between untilted pads and the collar in the reference configuration, at the pads' middle, m. An equilibrium
         does not depend on it.
     lubricant : Lubricant
-        With any law; a ``shear_law`` by the shear rate, such as `CarreauShear`.
+        Oil with any laws; a ``shear_law`` must depend on the shear rate, such as `CarreauShear`.
     pad_mass : float
         Mass of one pad, kg, its centre in the pivot.
     pad_inertia : (float, float)
@@ -83,7 +83,7 @@ class TiltingThrustPads(Checked):
     crown : float, default 0.0
         Depth of leading and trailing edge below the middle of the pad, m; a parabola along theta.
     cavitation : SwiftStieber, FullSommerfeld, Gumbel or Closure, default SwiftStieber()
-        One that does not conserve mass, with a ``cavity_pressure`` not above 0. The rupture line lies on vertices.
+        Model that does not conserve mass, with a ``cavity_pressure`` not above 0. The rupture line lies on vertices.
     contact : RegularisedWall or None, default None
         Smooth wall that carries load before a gap vanishes; None: a vanishing gap ends the run with an error.
     turbulence : NgPan, Hirs or None, default None
@@ -94,7 +94,7 @@ class TiltingThrustPads(Checked):
     Raises
     ------
     InputError
-        For values that can't be meant, pads that overlap, and a pivot that is not under its pad.
+        For values outside their ranges, pads that overlap, and a pivot that is not under its pad.
 
     Examples
     --------
@@ -123,7 +123,7 @@ class TiltingThrustPads(Checked):
     n_theta: int = 24
     n_r: int = 20
 
-    # Attributes that a joint asks of every bearing and of faces: one face, and a bore that no shaft ever reaches.
+    # Attributes that a joint reads of every bearing and of faces: one face, and a bore that no shaft can touch.
     bush = yielding = journal = thermal = asperity = roughness = wear = film = inlet = arc = None
     profiles = supply = ()
     end_pressures, inner_pressures, outer_pressures, squeeze = (0.0, 0.0), None, (0.0, 0.0), True
@@ -197,7 +197,7 @@ class TiltingThrustPads(Checked):
 
     @property
     def grid(self) -> tuple[int, int, np.ndarray, np.ndarray]:
-        """Arguments of the sector's `exudyn_ehd.film.thrust.annulus.Annulus` behind its radii."""
+        """Arguments of the sector's `exudyn_ehd.film.thrust.annulus.Annulus` that come after its radii."""
         half = 0.5 * self.extent
         theta, weight = axial_vertices(self.n_theta, half, STRETCH)
         return self.n_theta, self.n_r, half - self.pivot_angle + theta, weight
@@ -214,7 +214,7 @@ class TiltingThrustPads(Checked):
 
     @property
     def journal_radius(self) -> float:
-        """Outer radius by the name that it has in cylindrical bearings, m."""
+        """Outer radius, m, under the name of the radius of cylindrical bearings."""
         return self.outer_radius
 
     @property

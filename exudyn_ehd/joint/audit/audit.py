@@ -26,10 +26,9 @@ from exudyn_ehd.joint.balance.resolution import Resolution
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.step_error import enough_steps
 
-# Intervals across the peak over the needed ones from which on a coarser grid is advised. Larger: fewer such advices.
+# Ratio of the intervals across the peak to the needed ones above which a coarser grid is advised. Larger: later.
 TOO_FINE = 6.0
-# Intervals across the peak over the needed ones from which on a grid, if not coarser than the default, passes without
-# comparison with a finer one. Larger: more comparisons, each of which takes film solves.
+# The same ratio, above which a grid not coarser than the default passes without comparison. Larger: more comparisons.
 SURELY_FINE = 2.0
 # Intervals along z across a peak with which the load is accurate to 1 %.
 NEEDED_ALONG = 3.0

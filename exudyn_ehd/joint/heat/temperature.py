@@ -256,9 +256,8 @@ class LumpedTemperature(OilTemperature):
 # Flow into every control volume, as a share of the largest flow, that keeps its old temperature. It makes the
 # temperature of a volume that no oil enters defined. Larger: all temperatures lag more.
 STAGNANT = 1e-14
-# Exchange flow over every link within a supply area, over the film's largest flow. Smaller: areas are mixed less well;
-# their temperatures differ by up to a share n_theta / MIXED of their rise. Larger: more round-off, 1e-16 MIXED of the
-# rise.
+# Exchange flow over every link within a supply area, over the film's largest flow. Smaller: areas mix less well, their
+# temperatures differ by up to n_theta / MIXED of their rise. Larger: more round-off, 1e-16 MIXED of the rise.
 MIXED = 1e4
 # Exchange flow between the two rows at the side of a dam, over that in supply areas. Far smaller: the limiter of the
 # flows along z uses the slope between these rows, which is round-off, and steady temperatures do not converge.
