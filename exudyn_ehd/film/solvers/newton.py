@@ -83,7 +83,7 @@ LARGEST_DEFICIT = 1e-6
 NONLINEAR_WEIGHT = 6.0
 # Largest change of p / p_max, or of a fill, in a step with a new factor that converges. After a larger change small
 # pressures and fills have lost digits, which a further chord step restores.
-LARGEST_FINAL_CHANGE = 10.0
+LARGEST_FINAL_CHANGE = 0.3
 # Outcomes of a step.
 GOES_ON, FOUND, LOST = 0, 1, 2
 # Largest fraction of a gap by which one step may reduce it; larger values risk a shut gap, smaller ones cost steps.
@@ -235,7 +235,9 @@ def _take_step(kind, nonlinearity, whole, matrix, size, is_first, fresh, x, full
         )
     else:
         # the contraction rate is unknown after the first step
-        converged = changes == 0 and largest_change * largest_change <= ERROR_TOLERANCE * previous_change
+        # two steps may differ more by chance than the factor contracts
+        contracted = max(largest_change, LARGEST_CONTRACTION_RATE**2 * previous_change)
+        converged = changes == 0 and largest_change * contracted <= ERROR_TOLERANCE * previous_change
         reusable = changes == 0 and largest_change <= LARGEST_CONTRACTION_RATE * (1.0 if is_first else previous_change)
     return (
         largest_change < 1e300,

@@ -253,7 +253,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
         s.H -= 0.25
     e.take_rigid()
     e.deflection_old[:] = 0.1 * rng.random(SMALL.shape)
-    e.rates = Rates(mass=2.0 if closure.conserves_mass else 0.0, liner=3.0, pseudo=0.5, own=1.0)
+    e.rates = Rates(mass=2.0 if closure.conserves_mass else 0.0, liner=3.0, pseudo=0.5, gap_rate=1.0)
     P, fill, full = e.P, e.fill, np.ones(SMALL.shape, dtype=np.bool_)
     P[:] = 1.0 + rng.normal(size=SMALL.shape)
     if closure.conserves_mass:
