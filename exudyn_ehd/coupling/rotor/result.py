@@ -15,7 +15,7 @@ from exudyn_ehd.coupling.contract import INITIAL, Index, NodeIndex, ObjectIndex,
 from exudyn_ehd.coupling.rotor.vibrations import vibrations, vibrations_in_films_that_follow
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.pictures.records import Target
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import FilmError, InputError, require_number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -152,6 +152,11 @@ class RotorResult:
             if memories:
                 M, D, K = (part[k] for part in matrices)
                 found[k] = vibrations_in_films_that_follow(M, D, K, memories)
+                if found[k][0].size < 2 * len(M):
+                    raise FilmError(
+                        f"RotorResult: the vibrations at {self.speeds[k]:.6g} rad/s are not all found, because the "
+                        "films follow them with a delay; look at speeds beside it, or run it in time."
+                    )
         size = max(len(values) for values, _ in found)
         values = np.full((len(found), size), np.nan, dtype=complex)
         vectors = np.full((len(found), matrices[0].shape[1], size), np.nan, dtype=complex)

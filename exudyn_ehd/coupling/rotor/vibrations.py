@@ -11,7 +11,7 @@ from exudyn_ehd.joint.static.dynamic_stiffness import ROUNDING, FilmMemory
 
 # Largest unbalanced force of a vibration in the whole dynamic stiffness, over the largest of its terms, and relative
 # difference of two eigenvalues that count as one. Larger: spurious vibrations may be accepted.
-LEFT = 1e-7
+TOLERANCE = 1e-7
 # Part of the bodies in a motion above which it is always told. Smaller: more motions of the oil among the results.
 PART = 0.1
 # Largest such force, and relative change of the eigenvalue, from which Newton's method goes on. Larger: more guesses
@@ -30,7 +30,7 @@ def vibrations(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> tuple[np.ndarray,
 def vibrations_in_films_that_follow(
     M: np.ndarray, D: np.ndarray, K: np.ndarray, films: Sequence[FilmMemory]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues (m,) and vectors (n, m) of a system with films that follow it with a delay.
+    """Eigenvalues (m,) and vectors (n, m), of length 1, of a system with films that follow it with a delay.
 
     With the coordinates w of films and flexible bores (`FilmResponse.linear`), z = (y, w), and v = s z for coordinates
     with second derivatives,
@@ -66,7 +66,7 @@ def vibrations_in_films_that_follow(
         if len(told) >= 2 * n and part[k] < PART and not inverse[k].real > 0.0:
             continue
         s, y = _refined(M, D, K, films, 1.0 / complex(inverse[k]), vectors[:n, k].astype(complex))
-        if y is not None and not any(abs(s - other) < LEFT * abs(s) for other in told):
+        if y is not None and not any(abs(s - other) < TOLERANCE * abs(s) for other in told):
             told |= {s: y, s.conjugate(): y.conj()}
     return np.array(list(told)), np.array(list(told.values())).T.reshape(n, -1)
 
@@ -83,16 +83,16 @@ def _refined(
         return np.array([s**2 * M, s * D, K, *(film.beyond(s) for film in films)])
 
     for _ in range(MOST_STEPS):
-        if abs(s.imag) < LEFT * abs(s):
+        if abs(s.imag) < TOLERANCE * abs(s):
             # round-off of a motion without oscillation
             s, y = complex(s.real), (y / y[np.argmax(np.abs(y))]).real.astype(complex)
         try:
             T = terms(s)
             forces = T @ y
             error = np.abs(forces.sum(axis=0)).max() / np.abs(forces).max()
-            if not error > LEFT:
-                return s, y
-            slope = (terms(s * (1.0 + LEFT)) - T).sum(axis=0) / (LEFT * s)
+            if not error > TOLERANCE:
+                return s, y / np.linalg.norm(y)
+            slope = (terms(s * (1.0 + TOLERANCE)) - T).sum(axis=0) / (TOLERANCE * s)
             x = np.linalg.solve(T.sum(axis=0), slope @ y)
         except (RuntimeError, np.linalg.LinAlgError):  # at a motion of the film alone
             break

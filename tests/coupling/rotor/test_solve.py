@@ -23,6 +23,7 @@ from rigid_rotors import (
 )
 
 import exudyn_ehd as ehd
+from exudyn_ehd.coupling.rotor import vibrations
 from tests.sampling import sample
 
 SPEED = 300.0
@@ -158,6 +159,14 @@ def test_growth_is_that_of_the_slowest_motion(name):
     assert found.growth[0] == pytest.approx(slowest_motion(found, SPEED), rel=1e-6)
 
 
+def test_motions_that_are_not_found_are_no_result(monkeypatch):
+    mbs, _, _ = shaft(film=bearing(**OIL))
+    found = ehd.SolveEquilibrium(mbs, SPEED)
+    monkeypatch.setattr(vibrations, "_refined", lambda M, D, K, films, s, y: (s, None))
+    with pytest.raises(ehd.FilmError, match="the vibrations at 300 rad/s are not all found"):
+        found.growth  # noqa: B018
+
+
 def unstable_motions(result):
     """Number of eigenvalues with a positive real part, by the turns of det T along the imaginary axis.
 
@@ -182,10 +191,10 @@ def test_no_vibration_in_films_that_remember_is_missed(name, mass, speed):
     found = ehd.SolveEquilibrium(shaft(place=0.05, mass=mass, film=film, **scale)[0], speed)
     values = found.eigenvalues[0]
     assert np.sum(values.real > 0.0) == pytest.approx(unstable_motions(found), abs=0.02)
-    vibrations = values[values.imag > 0.0]
-    apart = np.abs(vibrations[:, None] - vibrations) / np.abs(vibrations) + np.eye(vibrations.size)
-    assert vibrations.size >= 2 and apart.min() > 1e-3
-    assert np.isfinite(found.campbell()["frequency"]).sum() == vibrations.size
+    swinging = values[values.imag > 0.0]
+    apart = np.abs(swinging[:, None] - swinging) / np.abs(swinging) + np.eye(swinging.size)
+    assert swinging.size >= 2 and apart.min() > 1e-3
+    assert np.isfinite(found.campbell()["frequency"]).sum() == swinging.size
 
 
 @pytest.mark.parametrize("seed", sample([1, 2, 3, 4], 1))
