@@ -13,6 +13,9 @@ least is treated as tipped over for the rest of the search.
 Newton's method uses the exact Jacobian with the tilts eliminated, ``K_aa - K_at K_tt^-1 K_ta``. Steps that do not
 reduce the residual are damped after Levenberg and Marquardt as in `exudyn_ehd.joint.balance.newton`.
 
+From a position on a single pad the films may push the journal away after a small slow displacement. The search then
+goes on in this direction, until other pads carry too. If it finds nothing, the position is returned with a warning.
+
 Small motions ``q exp(i nu t)`` of all coordinates q = (x, y, tilts, shifts) obey ``Z q = f``, Z = K + i nu C - nu^2 M.
 Without forces on the pads, the dynamic stiffness of the journal is ``Z_jj - Z_jp Z_pp^-1 Z_pj``.
 """
@@ -30,7 +33,7 @@ from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.joint.static.pads import Pad, PadLoads, TiltingPads
 from exudyn_ehd.joint.static.steady import SteadyResult, result_at
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import FilmError, InputError, require_number, warn_user
+from exudyn_ehd.status import SMALL, FilmError, InputError, require_number, warn_user
 
 WHERE = "equilibrium"
 # Tolerance of the unbalance over the load. Larger: fewer iterations, less accurate positions.
@@ -53,6 +56,9 @@ STARTS = np.array([0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.05, 1.3, 1.6, 1.9])
 TURNS = np.exp(1j * np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9]))
 # Number of initial guesses, those with the smallest unbalance, from which a search is made.
 MOST_STARTS = 2
+# Distances over the assembled clearance from an unstable position at which searches for a stable one begin. More of
+# them: found more often, slower.
+FALLS_BY = np.array([0.1, -0.1, 0.3, -0.3, 0.6, -0.6, 1.0, -1.0])
 # Angle from the pivot, rad, up to which the gap of an unloaded pad must widen along the pad.
 STEEPEST = 1.4
 # Largest overlap of surfaces with a contact, over the machined clearance. Smaller: pads rest less deep on the contact.
@@ -164,6 +170,13 @@ class Balanced(NamedTuple):
         """Return whether the unbalance is below a share of a force, N, plus the round-off of the pads' forces."""
         return self.left <= tolerance * size + ROUNDING * float(self.carried.sum())
 
+    def falls(self) -> np.ndarray | None:
+        """Direction in which the films push the journal away after a small slow displacement; None without one."""
+        stiffness, directions = np.linalg.eig(self.slope)
+        real = np.where(stiffness.imag == 0.0, stiffness.real, math.inf)
+        least = int(real.argmin())
+        return directions[:, least].real if real[least] < -SMALL * np.abs(stiffness).max() else None
+
 
 class PadSearch:
     """Search for the position of a journal in tilting pads under a load (2,), N.
@@ -216,7 +229,7 @@ class PadSearch:
             for start in starts[:MOST_STARTS]:
                 found.append(here := self._descend(start))
                 if here.is_balanced(self.size):
-                    return here
+                    return self._stable(here)
             if k and found:
                 here = min(found, key=lambda place: place.left)
                 self.tipped[np.argmin(np.where(self.tipped, math.inf, here.carried))] = True
@@ -233,6 +246,24 @@ class PadSearch:
             "contact=RegularisedWall(onset=...) to rest on, or more load; where films are thin, less load or a finer "
             "film grid."
         )
+
+    def _stable(self, found: Balanced) -> Balanced:
+        """Return a position to which the journal falls from the one that was found; this one, if it does not fall."""
+        if (direction := found.falls()) is None:
+            return found
+        for length in FALLS_BY * self.bearing.radial_clearance:
+            start = self.at(found.unknowns + length * direction)
+            here = found if start is None else self._descend(start)
+            if here.is_balanced(self.size) and here.falls() is None:
+                return here
+        x, y = found.unknowns[:2].tolist()
+        warn_user(
+            f"{self.where}: the journal rests unstably at ({x:.3g}, {y:.3g}) m: after a small displacement the films "
+            "push it further away, until other pads carry it; no stable position was found. Give the pads more "
+            "preload, or let the load act between two pads.",
+            UserWarning,
+        )
+        return found
 
     def _descend(self, here: Balanced) -> Balanced:
         """Reduce the unbalance by damped steps until the load is carried or no step makes progress."""

@@ -2,6 +2,7 @@
 
 import dataclasses
 import itertools
+import warnings
 
 import numpy as np
 import pytest
@@ -250,3 +251,41 @@ def test_heat_of_every_pad_is_that_of_its_film(name):
         assert film.peak_temperature == pytest.approx(alone.peak_temperature, abs=1e-4)
         np.testing.assert_allclose(film.force, alone.force, rtol=0, atol=1e-6 * LOAD)
     assert np.ptp([film.peak_temperature for film in rest.films]) > 1.0
+
+
+def slowly(rest):
+    """Eigenvalues of the journal's stiffness for slow motions."""
+    return np.linalg.eigvals(rest.reduced(1e-3 * abs(rest.speed))[0]).real
+
+
+@pytest.mark.slow
+def test_a_journal_falls_off_a_single_pad():
+    """Three pads of little preload, and a load about the pivot of one of them: a second one carries as well."""
+    three = ehd.TiltingPads(**PLAIN, pads=3, extent=1.42, preload=0.02, pivot_stiffness=3e8)
+    rest = ehd.equilibrium(three, speed=SPEED, load=(635 * np.sin(1.041), -635 * np.cos(1.041)))
+    assert rest.residual < 1e-8 and slowly(rest).min() > 0.0
+
+
+@pytest.mark.parametrize("seed", [pytest.param(k, marks=[pytest.mark.slow] if k > 3 else []) for k in range(24)])
+def test_no_unstable_position_without_a_word(seed):
+    rng = np.random.default_rng(100 + seed)
+    count, force = int(rng.integers(3, 6)), 10 ** rng.uniform(2.0, 4.3)
+    shape = {"extent": 2.0 * np.pi / count * rng.uniform(0.5, 0.9), "preload": rng.uniform(0.0, 0.3)}
+    pivot = 10 ** rng.uniform(0.0, 2.0) * force / 60e-6 if rng.random() < 0.4 else None
+    pads = ehd.TiltingPads(**PLAIN, pads=count, **shape, pivot_stiffness=pivot)
+    angle = rng.choice([0.0, np.pi / count]) + 0.03 * rng.normal()
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        try:
+            rest = ehd.equilibrium(pads, speed=SPEED, load=(force * np.sin(angle), -force * np.cos(angle)))
+        except ehd.FilmError:
+            return
+    assert told or slowly(rest).min() > 0.0
+
+
+@pytest.mark.slow
+def test_an_unstable_position_is_returned_with_a_warning():
+    three = ehd.TiltingPads(**PLAIN, pads=3, extent=1.27, preload=0.09)
+    with pytest.warns(UserWarning, match="rests unstably"):
+        rest = ehd.equilibrium(three, speed=SPEED, load=(1532 * np.sin(1.025), -1532 * np.cos(1.025)))
+    assert rest.residual < 1e-8 and slowly(rest).min() < 0.0
