@@ -121,7 +121,7 @@ class ThrustModel:
         faces = bearing.thrust
         assert faces is not None
         self.bearing, self.serial = bearing, 0
-        closure = place_line(bearing.cavitation, True)
+        closure = place_line(faces.cavitation or bearing.cavitation, True)
         inner = bearing.end_pressures if faces.inner_pressures is None else faces.inner_pressures
         self.faces = [
             FaceFilm(

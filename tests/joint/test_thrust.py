@@ -179,9 +179,26 @@ def test_effects_of_the_journal_s_film_leave_the_faces_theirs(options):
     )
 
 
+@pytest.mark.parametrize("name", CLOSURES)
+def test_the_faces_own_cavitation_model(name):
+    """Beside a bore of any model, films of the faces are those of a bearing whose bore has the faces' model too."""
+    faces = _faces(profile=PADS, cavitation=ehd.Gumbel(cavity_pressure=-1e4))
+    bearing, alike = _bearing(faces, cavitation=CLOSURES[name]), _bearing(faces, cavitation=faces.cavitation)
+    motion = 0.4 * SCALE
+    assert np.array_equal(ThrustModel(bearing).evaluate(motion).wrench, ThrustModel(alike).evaluate(motion).wrench)
+    at = {"speed": 300.0, "eccentricity_ratio": 0.6, "axial_position": 1e-5}
+    film, bare = (
+        ehd.steady(bearing, **at),
+        ehd.steady(dataclasses.replace(bearing, thrust=None), **at | {"axial_position": 0.0}),
+    )
+    assert np.array_equal(film.pressure, bare.pressure)
+    assert film.faces.axial_force == ehd.steady(alike, **at).faces.axial_force
+
+
 def test_refused():
     for options, names in (
-        ({"cavitation": ehd.ElrodAdams()}, "cavitation=ElrodAdams"),
+        ({"cavitation": ehd.ElrodAdams()}, "does not go with ElrodAdams"),
+        ({"faces": _faces(cavitation=ehd.ElrodAdams())}, "does not go with ElrodAdams"),
         ({"faces": _faces(inner_radius=0.024)}, "inner_radius must be at least"),
         (
             {"cavitation": ehd.Gumbel(cavity_pressure=-1e3), "faces": _faces(outer_pressures=(-2e3, 0.0))},

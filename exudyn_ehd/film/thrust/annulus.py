@@ -31,6 +31,7 @@ from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.closures import Closure, FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.grid import FilmGrid, axial_vertices, bearing_grid, rows_between
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drop_weights, drops, on_links, to_ends
@@ -152,9 +153,10 @@ class ThrustFaces(Checked):
     the point (X, Y) of the face in the joint frame, and the depth d of the pads (`exudyn_ehd.film.thrust.face`).
 
     Plane parallel faces carry by squeeze alone: for a steady axial load add pads, pressures or a contact. The faces
-    have the bearing's cavitation model, its lubricant with all laws, and ``turbulence`` by the Reynolds number at every
-    radius, which begins at 1440 unless the law has an ``onset``. The bearing's ``roughness``, ``asperity``, ``wear``,
-    ``profile`` and ``contact`` are those of the bore: faces are smooth. Not with `ElrodAdams`.
+    have the bearing's lubricant with all laws, and ``turbulence`` by the Reynolds number at every radius, which begins
+    at 1440 unless the law has an ``onset``. The bearing's ``roughness``, ``asperity``, ``wear``, ``profile`` and
+    ``contact`` are those of the bore: faces are smooth. Their cavities have no memory: if the bore has `ElrodAdams`,
+    give the faces a ``cavitation`` of their own.
 
     Temperature. With `LumpedThermal` faces have the one temperature of the bearing, and their power is part of the heat
     that sets it. With `FilmEnergy` each face has the temperature of the oil that leaves the bore at its end, the mean
@@ -185,6 +187,8 @@ class ThrustFaces(Checked):
         Gap of either face, on the lands, with the journal in the middle, m: half of the axial play.
     profile : TaperLand, StepLand or None, default None
         Pads on both faces; None: plane faces.
+    cavitation : SwiftStieber, Gumbel, FullSommerfeld, Closure or None, default None
+        Cavitation model of the faces; None: that of the bearing.
     contact : RegularisedWall or None, default None
         Smooth wall that carries load before a gap vanishes; None: a vanishing gap ends the run with an error.
     inner_pressures : (float, float) or None, default None
@@ -217,6 +221,7 @@ class ThrustFaces(Checked):
     outer_radius: float
     clearance: float
     profile: TaperLand | StepLand | None = None
+    cavitation: SwiftStieber | Gumbel | FullSommerfeld | Closure | None = None
     contact: RegularisedWall | None = None
     inner_pressures: tuple[float, float] | None = None
     outer_pressures: tuple[float, float] = (0.0, 0.0)
@@ -246,6 +251,8 @@ class ThrustFaces(Checked):
                 f"{self.inner_radius!r} m; the film is the ring between them."
             )
         require_type("ThrustFaces.profile", self.profile, TaperLand, StepLand, type(None))
+        closures = SwiftStieber, Gumbel, FullSommerfeld, Closure
+        require_type("ThrustFaces.cavitation", self.cavitation, *closures, type(None))
         require_type("ThrustFaces.contact", self.contact, RegularisedWall, type(None))
         for name in ("inner_pressures", "outer_pressures"):
             if getattr(self, name) is not None:
@@ -277,12 +284,11 @@ def check_faces(bearing: BearingOptions) -> None:
     faces = bearing["thrust"]
     if faces is None:
         return
-    oil, closure, radius = bearing["lubricant"], bearing["cavitation"], bearing["journal_radius"]
+    oil, closure, radius = bearing["lubricant"], faces.cavitation or bearing["cavitation"], bearing["journal_radius"]
     if closure.conserves_mass:
         raise InputError(
-            "JournalBearing.thrust=ThrustFaces(...) does not go with JournalBearing.cavitation=ElrodAdams(...): its "
-            "films have cavities without a memory; take another cavitation model, or two joints, one of them with the "
-            "faces."
+            "JournalBearing.thrust=ThrustFaces(...) does not go with ElrodAdams(...): cavities on faces have no "
+            "memory; give the faces a model of their own, ThrustFaces(cavitation=SwiftStieber(), ...)."
         )
     check_shear_law("JournalBearing.thrust=ThrustFaces(...)", oil)
     if faces.inner_radius < radius:
@@ -294,8 +300,9 @@ def check_faces(bearing: BearingOptions) -> None:
     lowest, cavity_pressure = min(*inner, *faces.outer_pressures), closure.cavity_pressure
     if cavity_pressure > lowest:
         raise InputError(
-            f"JournalBearing.cavitation: the cavity_pressure must not exceed the pressures at the edges of the thrust "
-            f"faces, {lowest:g} Pa, got {cavity_pressure:g} Pa; all are gauge pressures, lower the cavity pressure."
+            f"{'ThrustFaces' if faces.cavitation else 'JournalBearing'}.cavitation: the cavity_pressure must not "
+            f"exceed the pressures at the edges of the thrust faces, {lowest:g} Pa, got {cavity_pressure:g} Pa; all "
+            "are gauge pressures, lower the cavity pressure."
         )
 
 

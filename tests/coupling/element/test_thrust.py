@@ -130,9 +130,11 @@ def test_journal_floats_where_steady_says():
 
 
 @pytest.mark.slow
-def test_placed_in_equilibrium():
+@pytest.mark.parametrize("bore", (ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)), ids=("swift", "elrod"))
+def test_placed_in_equilibrium(bore):
     """Between the faces where it stands along the axis; their share keeps the journal of a heavy rotor there."""
-    bearing, load = _bearing(profile=ehd.TaperLand(pads=4, depth=3e-5)), (100.0, -800.0)
+    faced = _bearing(profile=ehd.TaperLand(pads=4, depth=3e-5), cavitation=ehd.SwiftStieber())
+    bearing, load = dataclasses.replace(faced, cavitation=bore), (100.0, -800.0)
     place = ehd.equilibrium(bearing, speed=200.0, load=load, axial_load=1500.0).film.faces.axial_position
     mbs, joint, _ = _rotor(bearing, mass=300.0, load=(*load, 1500.0), start=place)
     found = joint.place_in_equilibrium(load=load)
