@@ -296,8 +296,31 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, reasons: Ite
             f", error of the time steps {100.0 * error:.0f} % of the minimum film thickness at {time[k]:.6g} s: take "
             f"{enough_steps(time, h.motion[:, 8], h.step_error, h.step_count)}"
         )
+    error, k = error_of_pockets(bearing, history)
+    if error > LIMITS["time step"].value:
+        text += (
+            f", error of the pressure behind a restrictor {100.0 * error:.0f} % of the highest one in the step to "
+            f"{time[k]:.6g} s, which no estimate of the film's error contains: take smaller steps there"
+        )
     doubts = worth_an_audit(bearing, history) if hasattr(bearing, "reference_force") else []
     return text + (f"; worth an audit (joint.audit()): {', '.join(doubts)}." if doubts else ".")
+
+
+def error_of_pockets(bearing: object, history: JointHistory) -> tuple[float, int]:
+    """Largest error of a pressure behind a restrictor in one step, over the highest pressure there, and the step's end.
+
+    Areas with a compressible volume are integrated by backward Euler: the error of a step is half of the change of the
+    rate in it, times the step. Without such a volume the error is 0.
+    """
+    supply = getattr(bearing, "supply", ())
+    if history.time.size < 3 or not any(getattr(area.supply, "compressible_volume", 0.0) > 0.0 for area in supply):
+        return 0.0, 0
+    steps = np.diff(history.time)
+    pressures = np.array([history.lowest_pocket_pressure, history.highest_pocket_pressure])
+    errors = 0.5 * steps[1:] * np.abs(np.diff(np.diff(pressures) / steps)).max(axis=0)
+    highest = max(float(np.abs(pressures).max()), 1e-300)
+    k = int(errors.argmax())
+    return float(errors[k]) / highest, k + 2
 
 
 def spins(bearing: object, history: JointHistory) -> np.ndarray:

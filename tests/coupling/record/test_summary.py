@@ -234,6 +234,25 @@ def test_steps_that_are_too_coarse_are_named(lines):
     assert said in doubts.line("bearing", joint.bearing, coarse)
 
 
+def test_pressures_behind_restrictors_that_settle_within_few_steps_are_named(lines):
+    """Backward Euler of dp/dt = -p / T from p_0 with steps h: an error of some p_0 (h / T)^2 / 2 in a step."""
+    feed = ehd.Orifice(diameter=4e-4, supply_pressure=3e6, compressible_volume=1e-6)
+    mbs, joint = scene(supply=(ehd.Pocket(angle=1.0, width_angle=0.6, length=0.01, supply=feed),))
+    ehd.SolveDynamic(mbs, scenes.settings(2e-3, 100, tolerance=1e-8))
+    history, bearing = joint.history, joint.bearing
+    steps = np.arange(history.time.size)
+    for over, said in ((0.03, False), (0.5, True)):
+        pressure = 2e6 / (1.0 + over) ** steps
+        made = dataclasses.replace(history, lowest_pocket_pressure=0.5 * pressure, highest_pocket_pressure=pressure)
+        error, k = doubts.error_of_pockets(bearing, made)
+        true = pressure[k] - pressure[k - 1] * np.exp(-over)
+        assert error == pytest.approx(true / 2e6, rel=over)
+        text = f"error of the pressure behind a restrictor {100.0 * error:.0f} % of the highest one in the step to "
+        assert (text in doubts.line("bearing", bearing, made)) == said
+    rigid = dataclasses.replace(bearing.supply[0], supply=dataclasses.replace(feed, compressible_volume=0.0))
+    assert doubts.error_of_pockets(dataclasses.replace(bearing, supply=(rigid,)), made) == (0.0, 0)
+
+
 @pytest.mark.parametrize(("spin", "needed"), [(0.0, "800 steps in all"), (-20.0 * np.pi, "400 steps per turn")])
 def test_number_of_steps_that_would_do(spin, needed):
     """An error of 8 % falls to 2 % with twice the 400 equal steps of 0.2 s, which are two turns at the spin."""
