@@ -155,10 +155,6 @@ class DensityField:
         """Arguments of the kernels for this law; ``floor``: scaled pressure below which the density is constant."""
         return self.scale, floor, self.law.kernel_table, self.known, self.crosses
 
-    def at(self, pressure: float) -> float:
-        """Density over that at ambient pressure, at a scaled transformed pressure such as the cavity's."""
-        return float(law_at(pressure * self.scale, self.law.kernel_table)[1])
-
 
 class CompressibleLaw(PressureTransform):
     """Transform of a density law together with a viscosity's: ``s = r / (rho / rho_0)``.

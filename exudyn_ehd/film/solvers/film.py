@@ -35,6 +35,7 @@ from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL, RUPTURE
 from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityField
+from exudyn_ehd.film.lubricant.pressure_viscosity import law_at
 from exudyn_ehd.film.reynolds.balance import upstream
 from exudyn_ehd.film.reynolds.links import (
     FluxEffect,
@@ -284,6 +285,13 @@ class FilmArrays:
         carried, rho = self.carried if self.closure.conserves_mass else None, None if self.law is None else self.rho
         taken: np.ndarray = upstream(self.system.fx, self.system.fz, carried, rho)
         return taken
+
+    @property
+    def cavity_density(self) -> float:
+        """Density over that at ambient pressure, of oil at the cavity pressure; 1 without a density law."""
+        if self.law is None:
+            return 1.0
+        return float(law_at(self.system.cavity_pressure * self.pressure_scale, self.law.kernel_table)[1])
 
     @property
     def content(self) -> np.ndarray:

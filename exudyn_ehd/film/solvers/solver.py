@@ -134,6 +134,7 @@ class FilmSolver(FilmAnswers):
     ) -> tuple[Status, int]:
         """Solve as `solve` over a step, for ``void`` and ``outflow`` at its start, see `stored` and
         `FilmArrays.outflow`; None: a steady film."""
+        self.system.cavity_pressure = cavity_pressure
         kept = None if void is None else self.keep(void, step)
         self.lag(outflow, step)
         status, count = self.solve(vx, vz, cavity_pressure, kept, step)
@@ -227,14 +228,11 @@ class FilmSolver(FilmAnswers):
         s = self.system
         if self.density is not None:
             self.density.scale = self.pressure_scale
-            if mass_old is not None and step <= 0.0:
-                # rates at an instant keep the volume: a full film follows the gap at the density of its pressure
-                mass_old = np.minimum(mass_old / self.density.at(s.cavity_pressure), self.H)
         self.set_links()
         self.set_right_hand_side()
         line = s.line if isinstance(s.line, FilmLine) else s.oil_line
         if line is not None:
-            line.take(s.terms, s.b, 1.0 if self.density is None else self.density.at(s.cavity_pressure), self.vx)
+            line.take(s.terms, s.b, self.cavity_density, self.vx)
         if self.closure.clips:
             np.copyto(s.linear_pressure, s.pressure)
         self.set_times(mass_old, step)
@@ -322,6 +320,9 @@ class FilmSolver(FilmAnswers):
         if self.elements is not None:
             slope = self.elements.deform(before)
         kept = before - void
+        if self.law is not None and step <= 0.0:
+            # rates at an instant keep the volume: a full film follows the gap at the density of its pressure
+            kept = np.minimum(kept / self.cavity_density, before)
         # where the gap opens so fast that the extrapolated content is negative, it is 0 and does not follow the gap
         self.follows = slope * (kept > 0.0)
         return np.maximum(kept, 0.0, out=kept)

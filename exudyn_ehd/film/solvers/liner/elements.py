@@ -151,20 +151,23 @@ def move_elements(rigid, G, delta_old, inverse, gap_fields):
 
 @njit(cache=True, fastmath=FAST)
 def set_storage(gaps, load, P, fills, known, rates, beta, film):
-    """Set E of the elements, and the storage of the vertices: ``grow`` and ``kept`` of `balance.FilmTerms`.
+    """Set E of the elements, and the storage of the vertices: ``grow``, ``known`` and ``kept`` of `balance.FilmTerms`.
 
     ``known`` (3, n, m): film gap of the undeformed surfaces, start-of-step mass, and quantity that pseudo time stores
     at the start of its step.
     """
     H, E, rate, undeformed = gaps.H.reshape(-1), gaps.E.reshape(-1), gaps.rate.reshape(-1), known[0].reshape(-1)
     grow, kept, old, slow = film.grow.reshape(-1), film.kept.reshape(-1), known[1].reshape(-1), known[2].reshape(-1)
+    volume = film.known.reshape(-1)
     x, drive, p = P.reshape(-1), load.drive.reshape(-1), load.p.reshape(-1)
     pull = rates.mass + rates.pseudo
     for c in range(E.size):
         E[c] = H[c] - undeformed[c]
         if fills:
             grow[c] = H[c] * pull + rate[c] * rates.gap_rate
-            kept[c] = -old[c] * rates.mass - slow[c] * rates.pseudo
+            # the rates at an instant keep the volume
+            volume[c] = -old[c] * rates.mass * rates.gap_rate
+            kept[c] = -old[c] * rates.mass * (1.0 - rates.gap_rate) - slow[c] * rates.pseudo
         else:
             grow[c] = rate[c]
             kept[c] = rates.pseudo * (beta * (p[c] + (x[c] - drive[c])) - slow[c])
