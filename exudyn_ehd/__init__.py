@@ -28,7 +28,7 @@ the housing; theta counts from x about z; arrays are ``[theta, z]``, z from -L/2
 moments are taken about the joint's origin.
 
 What describes a scene raises `InputError` for values that can't be meant, and says which. Equations, assumptions and
-sources of an effect stand in full at the top of its module, e.g. ``help("exudyn_ehd.film.surfaces.patir_cheng")``.
+sources of an effect stand in full at the top of its module, e.g. ``help("exudyn_ehd.film.surfaces.roughness")``.
 
 Examples in docstrings take ``import numpy as np``, ``import exudyn as exu`` and ``import exudyn_ehd as ehd`` for
 granted, and go on from the examples that they name.

@@ -29,11 +29,9 @@ from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.supply.areas import SupplyArea, require_areas, source_pressure
 from exudyn_ehd.film.supply.restrictors import EndSeal, require_seals
 from exudyn_ehd.film.supply.rows import check_depths, check_on_arcs, check_supply
-from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
-from exudyn_ehd.film.surfaces.contact import ArchardWear, RegularisedWall
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
+from exudyn_ehd.film.surfaces.contact import ArchardWear, ElasticLiner, RegularisedWall
 from exudyn_ehd.film.surfaces.profile import SurfaceProfile
+from exudyn_ehd.film.surfaces.roughness import GreenwoodTripp, PatirCheng
 from exudyn_ehd.film.thrust.annulus import ThrustFaces, check_faces
 from exudyn_ehd.status import (
     POSITIVE,

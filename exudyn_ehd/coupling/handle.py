@@ -18,7 +18,7 @@ from exudyn_ehd.coupling.record.revolutions import Revolutions
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.restart import place
 from exudyn_ehd.film.models import FiniteLength
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.audit.audit import audit_record
 from exudyn_ehd.joint.audit.findings import Audit
 from exudyn_ehd.joint.model.build import build_model

@@ -156,7 +156,7 @@ def outside_flows(qz: np.ndarray, balance: np.ndarray, fixed: np.ndarray, unbrok
 
 @njit(cache=True)
 def transport_slopes(qx, qz, diagonal, T, link_z, held, slopes_out):
-    """Derivatives (5, n m) of the energy equation's system, in the layout of `exudyn_ehd.film.banded.assemble`.
+    """Derivatives (5, n m) of the energy equation's system, in the layout of `exudyn_ehd.film.banded.workspace`.
 
     The heat over a link is its flow times the temperature upstream plus, in z, a share of the difference to the
     temperature downstream. T times the balance of mass is subtracted from the balance of energy: the net outflow of a

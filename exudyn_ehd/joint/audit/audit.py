@@ -16,7 +16,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.audit import effects, switches
 from exudyn_ehd.joint.audit.case import MATTERS, Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Audit, Finding, judged

@@ -19,7 +19,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.film.thrust.annulus import ThrustFaces
 from exudyn_ehd.joint.audit.samples import (
     FilmState,

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.audit.audit import audit_of
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import Audit
