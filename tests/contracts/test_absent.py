@@ -74,7 +74,7 @@ EFFECTS = {
         },
     ),
     "across": (
-        ("film.heat.across", "joint.heat.across"),
+        ("joint.heat.across",),
         {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=330.0, conductivity=0.13, across=2)},
     ),
     "liner": (
@@ -107,7 +107,7 @@ EFFECTS = {
     ),
     "classic": (("film.solvers.sor",), {"film": ehd.ClassicSOR(n_theta=32, n_z=6), "cavitation": ehd.Gumbel()}),
     "impedance map": (
-        ("film.solvers.impedance_map", "joint.model.impedance"),
+        ("film.solvers.impedance_map", "joint.model.build:ImpedanceModel"),
         {"film": SMALL_MAP, "end_pressures": (0.0, 0.0)},
     ),
     "line on a liner": (

@@ -20,9 +20,8 @@ from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.audit import effects, switches
 from exudyn_ehd.joint.audit.case import MATTERS, Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Audit, Finding, judged
-from exudyn_ehd.joint.audit.ringing import WINDOW, watched
+from exudyn_ehd.joint.audit.resolution import WINDOW, Resolution, watched
 from exudyn_ehd.joint.audit.samples import RecordedSteps, recorded_states, squeeze_rate
-from exudyn_ehd.joint.balance.resolution import Resolution
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.step_error import enough_steps
 

@@ -286,8 +286,7 @@ def _rheology(
 
     kind, field = FilmTemperature, ViscosityField()
     if spec.across == 2:
-        from exudyn_ehd.film.heat.across import FluidityField
-        from exudyn_ehd.joint.heat.across import CubicTemperature
+        from exudyn_ehd.joint.heat.across import CubicTemperature, FluidityField
 
         kind, field = CubicTemperature, FluidityField()
     for law in laws:

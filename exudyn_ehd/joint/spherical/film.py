@@ -66,7 +66,7 @@ from exudyn_ehd.status import Status
 PLACE, VELOCITY, SPIN = slice(0, 3), slice(4, 7), slice(8, 11)
 SIZE = SPIN.stop
 """Motion: place (m), 0, velocity (m/s), 0, angular velocity (rad/s). The zeros are there because
-`exudyn_ehd.joint.step_rates` expects four places and four rates."""
+`exudyn_ehd.joint.time_step` expects four places and four rates."""
 # Matrices that select the place (3,), and velocity and angular velocity (6,), of a motion.
 PLACES, SPEEDS = np.eye(SIZE)[PLACE], np.eye(SIZE)[np.r_[VELOCITY, SPIN]]
 
