@@ -15,7 +15,7 @@ coupling   Exudyn: `CreateLubricatedJoint`, `CreateLubricatedSphericalJoint`, `C
            `CreateFlexibleBush`, solvers, histories
 studies    many runs: `parameter_study`; what keeps an error: `recommend`, `recommend_steps`
 tables     columns of numbers as text and as CSV; units by name
-compilation a line for the user while kernels are compiled
+compilation constants of kernels; a line for the user while they are compiled
 progress   how far long work is, where somebody looks
 storage    files on disk: whole or absent, and arrays kept between runs
 status     outcomes, errors and checks of input

@@ -128,10 +128,9 @@ from exudyn_ehd.solid.bush import Rayleigh as Rayleigh
 from exudyn_ehd.solid.fe_bore import BoreModesReport as BoreModesReport
 from exudyn_ehd.solid.fe_bore import FEBore as FEBore
 from exudyn_ehd.solid.fe_bore import add_bore_modes as add_bore_modes
-from exudyn_ehd.solid.journal.modes import ElasticJournal as ElasticJournal
-from exudyn_ehd.solid.journal.modes import HeldBands as HeldBands
-from exudyn_ehd.solid.journal.modes import HeldEnds as HeldEnds
-from exudyn_ehd.solid.journal.turning import FEJournal as FEJournal
+from exudyn_ehd.solid.journal import ElasticJournal as ElasticJournal
+from exudyn_ehd.solid.journal import HeldBands as HeldBands
+from exudyn_ehd.solid.journal import HeldEnds as HeldEnds
 from exudyn_ehd.solid.loads import DeadPressure as DeadPressure
 from exudyn_ehd.solid.loads import FollowerPressure as FollowerPressure
 from exudyn_ehd.solid.loads import Gravity as Gravity
@@ -146,6 +145,7 @@ from exudyn_ehd.solid.mesh_import import mesh_from_fem as mesh_from_fem
 from exudyn_ehd.solid.mesh_import import mesh_from_file as mesh_from_file
 from exudyn_ehd.solid.total_lagrange import NeoHooke as NeoHooke
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff as SaintVenantKirchhoff
+from exudyn_ehd.solid.turning_journal import FEJournal as FEJournal
 from exudyn_ehd.status import EHDError as EHDError
 from exudyn_ehd.status import FilmError as FilmError
 from exudyn_ehd.status import GridWarning as GridWarning

@@ -47,8 +47,8 @@ from exudyn_ehd.status import (
 if TYPE_CHECKING:
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
-    from exudyn_ehd.solid.journal.modes import ElasticJournal
-    from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
+    from exudyn_ehd.solid.journal import ElasticJournal
+    from exudyn_ehd.solid.turning_journal import FEJournal, TurningJournal
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -401,8 +401,8 @@ def _check_elastic(bearing: JournalBearing) -> None:
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, require_bore
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
-    from exudyn_ehd.solid.journal.modes import ElasticJournal
-    from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
+    from exudyn_ehd.solid.journal import ElasticJournal
+    from exudyn_ehd.solid.turning_journal import FEJournal, TurningJournal
 
     kinds = (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None))
     require_type("JournalBearing.bush", bearing.bush, *kinds)

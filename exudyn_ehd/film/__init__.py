@@ -2,7 +2,6 @@
 
 Module map
 ----------
-kernels      integers of one type, and the freedom of sums, for kernels
 grid         vertices (theta, z), control volumes, weights
 arcs         bores on parts of the circle: lobes, pads and dams, their columns and rows
 combinations options of a bearing that exclude or need each other

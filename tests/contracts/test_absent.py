@@ -158,7 +158,6 @@ SHARED = {
     "banded.factors",
     "reynolds.gap",
     "grid",
-    "kernels",
     "loads",
     "lubricant.lubricant",
     "reynolds.links",

@@ -20,7 +20,7 @@ from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.time_step import WEIGHTS, StepStart
 from exudyn_ehd.solid.fe_bore import ReducedBore
-from exudyn_ehd.solid.journal.turning import TurningJournal
+from exudyn_ehd.solid.turning_journal import TurningJournal
 from exudyn_ehd.status import SMALL, InputError, require_number, require_type, warn_user
 from exudyn_ehd.storage import fingerprint
 

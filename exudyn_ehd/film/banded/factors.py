@@ -42,7 +42,7 @@ from numba.core.errors import TypingError
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic
 
-from exudyn_ehd.film.kernels import FUSED, U0, U1, U2, U3, U4, unsigned
+from exudyn_ehd.compilation import FUSED, U0, U1, U2, U3, U4, unsigned
 
 
 @njit(cache=True)

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
-from exudyn_ehd.film.kernels import U0, U1, unsigned
+from exudyn_ehd.compilation import U0, U1, unsigned
 
 # Number of zeros after the half-bandwidth in every row of a band, for kernels that process four pivots and vectors of
 # four numbers. Smaller numbers let them read the next row, larger ones cost time.

@@ -55,9 +55,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.compilation import FAST
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.grid import Mesh
-from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.gap import Gradients
 from exudyn_ehd.film.reynolds.links import LinkFlux
@@ -234,7 +234,7 @@ def _by_bare(t):
 
 @njit(cache=True)
 def liner_rows(line, gap_ratio, density, lift, number, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh):
-    """Return the results of `exudyn_ehd.film.cavitation.rupture_line.line_rows`, with the derivatives through t and
+    """Return the results of `line_rows`, with the derivatives through t and
     through the conductance that the liner adds, ``lift`` (m,) times the speed."""
     rows, places, weights = weigh_line(line, number)
     gap, t, m = HF.reshape(-1), gap_ratio.reshape(-1), HF.shape[1]

@@ -8,7 +8,7 @@ of its upstream end, the terms of the balance are
 
 The balance of a vertex is the sum of outflow and storage, less the inflow. ``prompt`` and ``late`` are 1 and 0, or
 those of `exudyn_ehd.film.reynolds.links`. The derivatives to the unknowns (P where ``full``, else the fill) are stored
-per link, as ``slopes`` for `banded.assemble`. The derivatives through the density are set here, those through the gap
+per link, as ``slopes`` for `banded.workspace`. The derivatives through the density are set here, those through the gap
 in `exudyn_ehd.film.solvers.winkler_kernels`.
 
 Derivatives of the links' flows to gaps and speeds at fixed pressure
@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.kernels import FAST, I0, I1
+from exudyn_ehd.compilation import FAST, I0, I1
 
 
 class FilmTerms(NamedTuple):
@@ -253,7 +253,7 @@ def _storage_slopes(area, full, fill, rho, by, grow, known, out):
 
 @njit(cache=True)
 def film_slopes(fill, full, rho, rho_P, film, slopes):
-    """Set the derivatives (5, n m) of flows and storage for `banded.assemble`, at fixed gaps.
+    """Set the derivatives (5, n m) of flows and storage for `banded.workspace`, at fixed gaps.
 
     Unknowns are pressures where ``full``, else fills. ``fill`` and ``full`` are None for a film that is full
     everywhere, ``rho`` and ``rho_P`` for an incompressible one.
@@ -326,7 +326,7 @@ def link_derivatives(P, H, HF, E, up, laws, metric, vx, vz, by, by_speed):
     E : (n, m) array or None
         Change of the gap by a liner; None: no liner, the derivatives to d are not set.
     up : (2, n m) array
-        Result of `exudyn_ehd.film.reynolds.balance.upstream`.
+        Result of `upstream`.
     laws : twice five (n, m) arrays, or None
         `LinkFlux.laws`; None: a plain film.
     metric : (4, n, m) array

@@ -41,8 +41,8 @@ import numpy as np
 from numba import njit
 from scipy.sparse import csr_matrix
 
+from exudyn_ehd.compilation import FAST
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 
 

@@ -43,6 +43,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.compilation import I0, I1, NO
 from exudyn_ehd.film.banded.workspace import dense_band
 from exudyn_ehd.film.cavitation.closures import imbalance
 from exudyn_ehd.film.cavitation.rupture_line import line_terms
@@ -56,7 +57,6 @@ from exudyn_ehd.film.cavitation.states import (
     snap_to_bounds,
     subtract_sink,
 )
-from exudyn_ehd.film.kernels import I0, I1, NO
 from exudyn_ehd.film.lubricant.density import density_at
 from exudyn_ehd.film.reynolds.balance import film_balance, terms_of
 from exudyn_ehd.film.reynolds.links import linear_residual

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.kernels import FAST
+from exudyn_ehd.compilation import FAST
 from exudyn_ehd.film.reynolds.balance import flat
 
 

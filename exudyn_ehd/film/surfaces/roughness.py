@@ -110,7 +110,7 @@ import numpy as np
 import scipy
 from numba import njit
 
-from exudyn_ehd.film.kernels import FAST
+from exudyn_ehd.compilation import FAST
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drop_weights, drops, on_links, to_ends
 from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number

@@ -1,7 +1,7 @@
 """Resolution of a film by its grid, and by the time steps of a run.
 
-Pressure peak on the grid, estimated from one film
---------------------------------------------------
+Grid: the pressure peak, estimated from one film
+------------------------------------------------
 Around the bore, the width of the peak at half its height decides. With ``columns`` intervals across this width, the
 relative error of the peak pressure of an aligned journal is up to ``0.5 / columns^2``; it depends on where the peak
 lies between two columns. This was measured at L/D 0.25 to 2 and a minimum film thickness of 0.005 to 0.5 of the
@@ -21,8 +21,8 @@ SwiftStieber. From a narrowing of 2.2 on the computed peak is too low. `tests/jo
 which films cause a warning, and the errors on the grids that it names. The grids of thrust faces and balls are not
 judged here; an audit compares a ball's grid with finer ones.
 
-Time integration that rings, recognised from the accepted steps of a joint
---------------------------------------------------------------------------
+Time steps: integration that rings, recognised from the accepted steps of a joint
+---------------------------------------------------------------------------------
 The deviation of a force is d_k = F_k - L_k, where L_k is the value at t_k of the line through the forces of the steps
 k - 1 and k + 1. An alternation F = F_0 + (-1)^k A has d_k = 2 (-1)^k A. An oscillation with n steps per period has
 d_k = (1 - cos(2 pi / n)) times its value. So d changes its sign from step to step only below some three steps per

@@ -76,7 +76,7 @@ def _pin(tolerance: float, bearing: JournalBearing) -> JournalBearing:
     With a ``tolerance`` of 0.08 the error of the peak pressure is 1 to 3 % where the change is large.
     """
     # imported here: a rigid bearing needs no solid
-    from exudyn_ehd.solid.journal.modes import ElasticJournal
+    from exudyn_ehd.solid.journal import ElasticJournal
     from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 
     half, steel = 0.5 * bearing.length, SaintVenantKirchhoff(**STEEL)

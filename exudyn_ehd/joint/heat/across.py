@@ -38,6 +38,7 @@ from numba import njit
 from numpy.polynomial import Polynomial
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.compilation import FAST
 from exudyn_ehd.film.heat.energy import (
     LOBATTO,
     ViscosityField,
@@ -48,7 +49,6 @@ from exudyn_ehd.film.heat.energy import (
     passed,
 )
 from exudyn_ehd.film.heat.options import FilmEnergy
-from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.reynolds.links import LinkFlux, drops, to_ends
 from exudyn_ehd.joint.heat.power import conductances_of, dropped, sheared
 from exudyn_ehd.joint.heat.temperature import MIXED, STAGNANT, HeatBalance, linear

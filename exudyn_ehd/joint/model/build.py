@@ -31,8 +31,8 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History, Journa
 from exudyn_ehd.joint.tangent.bore import elastic_tangent
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush, bore_modes
 from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
-from exudyn_ehd.solid.journal.modes import ElasticJournal, journal_modes
-from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
+from exudyn_ehd.solid.journal import ElasticJournal, journal_modes
+from exudyn_ehd.solid.turning_journal import FEJournal, TurningJournal
 from exudyn_ehd.status import FilmError, InputError, Status
 
 # Largest tilt that is ignored: reduction of the gap at the ends, over the minimum film thickness. Its effect on the
@@ -157,7 +157,7 @@ class TurningEvaluation(ElasticEvaluation):
     """One film evaluation on a journal whose modes turn under it.
 
     ``wrench`` contains the moment of the pressure on the deflected journal about its axis. ``bore`` has the coordinates
-    of the body's modes, ``film.bore`` those of standing waves, see `exudyn_ehd.solid.journal.turning`.
+    of the body's modes, ``film.bore`` those of standing waves, see `exudyn_ehd.solid.turning_journal`.
 
     Attributes
     ----------

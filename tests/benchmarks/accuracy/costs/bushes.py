@@ -31,8 +31,7 @@ from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush, bore_modes
-from exudyn_ehd.solid.elements.element import Quadrature
-from exudyn_ehd.solid.elements.kinds import GAUSS27, IRONS14
+from exudyn_ehd.solid.elements.element import GAUSS27, IRONS14, Quadrature
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import EHDError
