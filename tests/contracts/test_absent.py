@@ -115,7 +115,7 @@ EFFECTS = {
         {"cavitation": ehd.SwiftStieber(line_in_cells=True), "bush": LINER},
     ),
     "line of a film that conserves mass on a liner": (
-        ("film.cavitation.rupture_line:FilmLine",),
+        ("film.cavitation.rupture_line:undeformed",),
         {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True), "bush": LINER},
     ),
     "holes": (

@@ -234,8 +234,8 @@ def _by_bare(t):
 
 @njit(cache=True)
 def liner_rows(line, gap_ratio, density, lift, number, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh):
-    """Return the results of `line_rows`, with the derivatives through t and
-    through the conductance that the liner adds, ``lift`` (m,) times the speed."""
+    """Return the results of `line_rows`, with the derivatives through t and through the conductance that the liner
+    adds, ``lift`` (m,) times the speed."""
     rows, places, weights = weigh_line(line, number)
     gap, t, m = HF.reshape(-1), gap_ratio.reshape(-1), HF.shape[1]
     f, k, s, by = line[0], line[1], line[6], np.zeros((10, places.size))
