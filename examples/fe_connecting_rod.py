@@ -40,7 +40,7 @@ from scipy.sparse.linalg import spsolve
 
 import exudyn_ehd as ehd
 from exudyn_ehd.pictures.style import styled
-from exudyn_ehd.solid.elements.kinds import HEX_NODES
+from exudyn_ehd.solid.elements.element import HEX_NODES
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 
 CRANK, ROD = 0.043, 0.14

@@ -15,7 +15,7 @@ coupling   Exudyn: `CreateLubricatedJoint`, `CreateLubricatedSphericalJoint`, `C
            `CreateFlexibleBush`, solvers, histories
 studies    many runs: `parameter_study`; what keeps an error: `recommend`, `recommend_steps`
 tables     columns of numbers as text and as CSV; units by name
-compilation a line for the user while kernels are compiled
+compilation constants of kernels; a line for the user while they are compiled
 progress   how far long work is, where somebody looks
 storage    files on disk: whole or absent, and arrays kept between runs
 status     outcomes, errors and checks of input
@@ -28,7 +28,7 @@ the housing; theta counts from x about z; arrays are ``[theta, z]``, z from -L/2
 moments are taken about the joint's origin.
 
 What describes a scene raises `InputError` for values that can't be meant, and says which. Equations, assumptions and
-sources of an effect stand in full at the top of its module, e.g. ``help("exudyn_ehd.film.surfaces.patir_cheng")``.
+sources of an effect stand in full at the top of its module, e.g. ``help("exudyn_ehd.film.surfaces.roughness")``.
 
 Examples in docstrings take ``import numpy as np``, ``import exudyn as exu`` and ``import exudyn_ehd as ehd`` for
 granted, and go on from the examples that they name.

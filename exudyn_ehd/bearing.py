@@ -29,11 +29,9 @@ from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.supply.areas import SupplyArea, require_areas, source_pressure
 from exudyn_ehd.film.supply.restrictors import EndSeal, require_seals
 from exudyn_ehd.film.supply.rows import check_depths, check_on_arcs, check_supply
-from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
-from exudyn_ehd.film.surfaces.contact import ArchardWear, RegularisedWall
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
+from exudyn_ehd.film.surfaces.contact import ArchardWear, ElasticLiner, RegularisedWall
 from exudyn_ehd.film.surfaces.profile import SurfaceProfile
+from exudyn_ehd.film.surfaces.roughness import GreenwoodTripp, PatirCheng
 from exudyn_ehd.film.thrust.annulus import ThrustFaces, check_faces
 from exudyn_ehd.status import (
     POSITIVE,
@@ -49,8 +47,8 @@ from exudyn_ehd.status import (
 if TYPE_CHECKING:
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
-    from exudyn_ehd.solid.journal.modes import ElasticJournal
-    from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
+    from exudyn_ehd.solid.journal import ElasticJournal
+    from exudyn_ehd.solid.turning_journal import FEJournal, TurningJournal
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -403,8 +401,8 @@ def _check_elastic(bearing: JournalBearing) -> None:
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, require_bore
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
-    from exudyn_ehd.solid.journal.modes import ElasticJournal
-    from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
+    from exudyn_ehd.solid.journal import ElasticJournal
+    from exudyn_ehd.solid.turning_journal import FEJournal, TurningJournal
 
     kinds = (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None))
     require_type("JournalBearing.bush", bearing.bush, *kinds)

@@ -1,5 +1,12 @@
-"""Compilations of the package's kernels in this process: a line for the user, and a pause of the garbage collector.
+"""Compilation of kernels: constants of one type for them, a line for the user, and a pause of the garbage collector.
 
+Constants
+---------
+numba compiles a kernel again for every literal number or truth value among its arguments. It checks whether signed
+indices are negative, which prevents vectorised loops. An unsigned index plus a literal number becomes a float.
+
+Compilations in this process
+----------------------------
 numba reports every compilation as an event. Kernels that are read from its cache make none. The collector would look
 through numba's syntax trees again and again, which takes a tenth of the processor time.
 """
@@ -7,10 +14,24 @@ through numba's syntax trees again and again, which takes a tenth of the process
 from __future__ import annotations
 
 import gc
+from typing import Any
 
+import numpy as np
 from numba.core import event
 
 from exudyn_ehd.progress import tell
+
+# Permissions of the compiler: reorder sums, fuse products and sums, ignore the sign of zero, multiply by inverses.
+# Infinite values and nan are handled exactly.
+FAST = {"reassoc", "contract", "nsz", "arcp"}
+# The same permissions, but sums in the written order.
+FUSED = {"contract", "nsz", "arcp"}
+I0, I1, I4 = np.int64(0), np.int64(1), np.int64(4)
+# of type Any, since mypy accepts no products of numpy integers as indices
+unsigned: Any = np.uint64
+U0, U1, U2, U3, U4 = (unsigned(k) for k in range(5))
+YES, NO = np.True_, np.False_
+
 
 MESSAGE = "exudyn_ehd: compiling kernels, once per installation (about 20 s for a first film) ..."
 

@@ -1732,7 +1732,7 @@ for _ in "12": ehd.steady(bushed, speed=9.0, eccentricity_ratio=0.2), [f.write_t
 from exudyn_ehd.pictures.bush import contour_figure
 contour_figure(mesh, [], label="stress in Pa")
 
-from exudyn_ehd.solid.stress import StressRecovery
+from exudyn_ehd.solid.total_lagrange import StressRecovery
 StressRecovery(mesh=mesh, material=steel).locate([[0.0, 0.0, 0.0]])
 
 from exudyn_ehd.solid.total_lagrange import TotalLagrange

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.solid.linear import sparse_factor
 from exudyn_ehd.solid.loads import BushLoad, FollowerPressure, dead_forces
-from exudyn_ehd.solid.total_lagrange import TotalLagrange
+from exudyn_ehd.solid.total_lagrange import TotalLagrange, sparse_factor
 from exudyn_ehd.status import EHDError, require_integer
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from exudyn_ehd.solid.unrolled import Surface
+from exudyn_ehd.solid.mesh import Surface
 
 Pressure = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """p [Pa] at angles theta [rad] and at zeta = 2 z / length, from -1 to 1 over a bore's length."""

@@ -5,7 +5,7 @@ from itertools import permutations
 import numpy as np
 
 import exudyn_ehd as ehd
-from exudyn_ehd.solid.elements.kinds import TET_EDGES
+from exudyn_ehd.solid.elements.element import TET_EDGES
 
 # Corners of a hexahedron by their bits (radial, around, along).
 CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]

@@ -13,8 +13,8 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.joint.thrust import ThrustEvaluation
+from exudyn_ehd.joint.time_step import StepStart
 from exudyn_ehd.status import InputError, Status
 
 # Exudyn's index types exist at run time, but not in its type stubs.

@@ -58,7 +58,7 @@ Under a given load the journal sinks.
 
 Films thinner than the surfaces are rough, where the bearing says nothing about rough surfaces or contact.
 
-Films whose pressure peak the grid does not resolve (`exudyn_ehd.joint.balance.resolution`), at the highest pressure.
+Films whose pressure peak the grid does not resolve (`exudyn_ehd.joint.audit.resolution`), at the highest pressure.
 
 Films that carry so little that Newton's absolute tolerance is a share of it.
 """
@@ -79,7 +79,7 @@ from exudyn_ehd.coupling.exudyn_solvers import USUAL_RADIUS, Solver
 from exudyn_ehd.coupling.kinematics.relative import eccentricity_ratios, levers_of
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.joint.audit.findings import LIMITS
-from exudyn_ehd.joint.audit.ringing import FADING
+from exudyn_ehd.joint.audit.resolution import FADING, Resolution, coarse_film, is_judged, resolution
 from exudyn_ehd.joint.audit.samples import RING_COMPLIANCE, adiabatic_rise, time_mean
 from exudyn_ehd.joint.audit.switches import (
     MULTIGRADE,
@@ -88,7 +88,6 @@ from exudyn_ehd.joint.audit.switches import (
     STEEL,
     TEMPERATURE_COEFFICIENT,
 )
-from exudyn_ehd.joint.balance.resolution import Resolution, coarse_film, is_judged, resolution
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady import MORE_OIL
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE, enough_steps

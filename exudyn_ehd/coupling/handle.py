@@ -18,11 +18,10 @@ from exudyn_ehd.coupling.record.revolutions import Revolutions
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.restart import place
 from exudyn_ehd.film.models import FiniteLength
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.audit.audit import audit_record
 from exudyn_ehd.joint.audit.findings import Audit
-from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.model.impedance import ImpedanceModel
+from exudyn_ehd.joint.model.build import ImpedanceModel, build_model
 from exudyn_ehd.joint.model.results import FilmFields
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult
 from exudyn_ehd.pictures.mixins import FilmPictures, HistoryPictures

@@ -95,7 +95,7 @@ class SphericalHistory(FilmSteps):
         Centre of the ball. From the socket's centre, along x, y, z.
     velocity : (n, 3) [m/s]
         Velocity of the ball's centre. Against the socket, along x, y, z; the rate that the film takes
-        (`exudyn_ehd.joint.step_rates`).
+        (`exudyn_ehd.joint.time_step`).
     angular_velocity : (n, 3) [rad/s]
         Angular velocity of the ball. Against the socket, about x, y, z, as the film takes it.
     force : (n, 3) [N]

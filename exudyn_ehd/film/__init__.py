@@ -2,15 +2,13 @@
 
 Module map
 ----------
-kernels      integers of one type, and the freedom of sums, for kernels
 grid         vertices (theta, z), control volumes, weights
-gradients    derivatives of balances and other sums to the gaps around their vertices, to a pose, to a bore
 arcs         bores on parts of the circle: lobes, pads and dams, their columns and rows
 combinations options of a bearing that exclude or need each other
 models       film models that a scene names; their grids and solvers
 supply       grooves, holes, pockets
 loads        integrals of pressure, shear and drag; flows through the edges; largest pressure, between the vertices too
-reynolds     gap and flow through the links between vertices
+reynolds     gap, flow through the links between vertices, and derivatives to the gap
 lubricant    oil: viscosity and density laws
 surfaces     what lies on the walls: profile, roughness, contact, wear, liner
 cavitation   closures: where the film is full, and what it carries where it is not

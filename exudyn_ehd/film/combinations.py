@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal, Sump, known_supply
-from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.lubricant.temperature_viscosity import require_covered
+from exudyn_ehd.film.lubricant.lubricant import Lubricant, require_covered
 from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.reynolds.turbulence import FOLLOWING, check_turbulence
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply.restrictors import Capillary, GivenFlow
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.film.thrust.annulus import BearingOptions
 from exudyn_ehd.status import InputError
 

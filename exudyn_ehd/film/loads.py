@@ -25,7 +25,7 @@ import math
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.kernels import FAST
+from exudyn_ehd.compilation import FAST
 
 
 @njit(cache=True, fastmath=FAST)

@@ -19,13 +19,13 @@ from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
+from exudyn_ehd.film.solvers.winkler import Liner
 from exudyn_ehd.film.supply.areas import AxialGroove, SupplyArea, placed
 from exudyn_ehd.film.supply.restrictors import sealed_grid
 from exudyn_ehd.film.supply.rows import column_of_hole, meeting_rows, supply_rows
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.status import Checked, InputError, require_count
 
 # Columns of a film that leaves them to the bearing.

@@ -4,9 +4,8 @@ Module map
 ----------
 solved_film  record of one evaluation, from which all modules below read
 plain_film   a film without further effects in one kernel
-step_rates   rates of a step that agree with its positions
+time_step    rates of a step that agree with its positions; error of a step within which the load jumps
 step_error   error of the gap by the time steps of a run
-jump_error   error of a step within which the load jumps
 bore         shapes of an elastic bore and their balance
 tangent      derivatives of the wrench
 heat         temperature over time

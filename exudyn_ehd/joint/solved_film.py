@@ -29,7 +29,7 @@ from exudyn_ehd.film.heat.options import Walls
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
-from exudyn_ehd.film.solvers.liner.film import LinerFilm
+from exudyn_ehd.film.solvers.liner import LinerFilm
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.supply.cuts import RecessShear, SupplyMap
 from exudyn_ehd.film.surfaces.contact import Contact, slip
@@ -166,7 +166,7 @@ class FilmParts:
         m3/s per scaled flow.
     uneven_drag : bool
         True if a pressure gradient exerts different shear forces on both surfaces; see
-        `exudyn_ehd.film.surfaces.patir_cheng`.
+        `exudyn_ehd.film.surfaces.roughness`.
     evaluations : int
         Number of the model's evaluations; by it a record detects that the buffers contain another film.
     """

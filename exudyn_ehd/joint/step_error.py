@@ -16,7 +16,7 @@ The parabolas do not hold if a load L on the film jumps within a step. If the lo
 within the step is known. It exceeds the mean of both ends by s d, with the deviation d of L from the line through the
 two states before, and the offset s (`exudyn_ehd.coupling.element.outer_load`). For a jump at the fraction u of the
 step, s = 1/2 - u. Such a step, and the one after it, is integrated again with the film's force between both ends
-(`exudyn_ehd.joint.jump_error`). The result replaces l and m.
+(`exudyn_ehd.joint.time_step`). The result replaces l and m.
 
 Errors e of the pose follow the equation of motion of the journal in its film, under the same load,
 
@@ -58,7 +58,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.joint.jump_error import GAMMA, errors_of_jumps, extrapolated, resists
+from exudyn_ehd.joint.time_step import GAMMA, errors_of_jumps, extrapolated, resists
 
 
 class MotionPart(NamedTuple):

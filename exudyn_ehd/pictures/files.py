@@ -34,7 +34,7 @@ from exudyn_ehd.status import InputError, require_integer, require_number
 from exudyn_ehd.storage import replacing
 
 if TYPE_CHECKING:
-    from exudyn_ehd.solid.stress import StressRecovery
+    from exudyn_ehd.solid.total_lagrange import StressRecovery
 
 
 class Frames:
@@ -232,7 +232,7 @@ def bush_mesh(
 
 def _recovery(bush: object) -> StressRecovery:
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush
-    from exudyn_ehd.solid.stress import StressRecovery
+    from exudyn_ehd.solid.total_lagrange import StressRecovery
 
     assert isinstance(bush, ANCFBush | ModalBush)
     return StressRecovery(mesh=bush.build_mesh(), material=bush.material)

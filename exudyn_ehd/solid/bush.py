@@ -28,13 +28,10 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.solid import pressure_modes
-from exudyn_ehd.solid.elements.element import Quadrature
-from exudyn_ehd.solid.elements.kinds import HEX20
-from exudyn_ehd.solid.linear import held_solution
-from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
+from exudyn_ehd.solid.elements.element import HEX20, Quadrature
+from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder, Surface, directed
 from exudyn_ehd.solid.pressure_modes import FilmSurface, film_modes, film_points, orthogonal_on
-from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, own_rule
-from exudyn_ehd.solid.unrolled import Surface, directed
+from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, held_solution, own_rule
 from exudyn_ehd.status import (
     NOT_NEGATIVE,
     Checked,
@@ -118,8 +115,8 @@ class ANCFBush(_Solid):
     material : SaintVenantKirchhoff or NeoHooke
         `NeoHooke` for soft bushes, beyond strains of a few per cent.
     quadrature : Quadrature or None, default None
-        Of hexahedra (`exudyn_ehd.solid.elements.kinds`) `IRONS14` by default, `GAUSS27` for the reference, `GAUSS8` for
-        speed; of tetrahedra (`exudyn_ehd.solid.elements.kinds`) `HAMMER4` by default, `WALKINGTON14` for the reference.
+        Of hexahedra `IRONS14` by default, `GAUSS27` for the reference, `GAUSS8` for speed; of tetrahedra `HAMMER4` by
+        default, `WALKINGTON14` for the reference; see `exudyn_ehd.solid.elements.element`.
     damping : Rayleigh or None, default None
         Material damping; None: undamped.
     parallel : bool, default False

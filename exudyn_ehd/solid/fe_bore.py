@@ -28,11 +28,9 @@ from scipy.sparse import csr_matrix, spmatrix
 
 from exudyn_ehd.progress import announced
 from exudyn_ehd.solid.bush import require_tolerance
-from exudyn_ehd.solid.elements.kinds import boundary_faces
-from exudyn_ehd.solid.linear import held_solution
-from exudyn_ehd.solid.mesh import require_frame
+from exudyn_ehd.solid.mesh import Surface, boundary_faces, patch, require_frame
 from exudyn_ehd.solid.pressure_modes import ALONG, AROUND, FilmSurface, film_modes, film_points
-from exudyn_ehd.solid.unrolled import Surface, patch
+from exudyn_ehd.solid.total_lagrange import held_solution
 from exudyn_ehd.status import POSITIVE, SMALL, Checked, InputError, require_bool, require_number, require_vector
 
 # Largest distance of a point beyond a face, in natural coordinates: facets, and films as long as the bore.

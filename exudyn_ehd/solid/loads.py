@@ -13,10 +13,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from exudyn_ehd.solid.journal.harmonics import SHAPES, SLOPES, WEIGHTS
-from exudyn_ehd.solid.mesh import BushMesh, Line
+from exudyn_ehd.solid.harmonics import SHAPES, SLOPES, WEIGHTS
+from exudyn_ehd.solid.mesh import BushMesh, Line, Surface
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
-from exudyn_ehd.solid.unrolled import Surface
 from exudyn_ehd.status import Checked, InputError, require_number, require_vector
 
 LoadHistory = Callable[[float], float]

@@ -11,11 +11,9 @@ from typing import ClassVar, TypeAlias
 
 import numpy as np
 
-from exudyn_ehd.solid.elements.element import face_of
-from exudyn_ehd.solid.elements.kinds import ELEMENTS, boundary_faces, element_of
+from exudyn_ehd.solid.elements.element import ELEMENTS, element_of, face_of
 from exudyn_ehd.solid.fe_bore import BodyMesh
-from exudyn_ehd.solid.mesh import BushMesh, require_frame, surface_of
-from exudyn_ehd.solid.unrolled import patch
+from exudyn_ehd.solid.mesh import BushMesh, boundary_faces, patch, require_frame, surface_of
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number, require_vector
 
 

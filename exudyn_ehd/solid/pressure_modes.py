@@ -53,7 +53,7 @@ from numpy.polynomial.legendre import legval
 from scipy.linalg import block_diag, eigh
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.solid.unrolled import Surface, directed
+from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.status import InputError
 
 # Version of the choice of modes: raise it with every change of what follows, so that files of older modes are not used.

@@ -1,4 +1,4 @@
-"""The flexible bush as a total Lagrangian solid: force, tangent, mass, energy.
+"""The flexible bush as a total Lagrangian solid: force, tangent, mass, energy and stress; factors of its matrices.
 
 Positions are absolute (the absolute nodal coordinate formulation): x = X + u with the displacement u in one fixed
 frame, interpolated by the mesh's elements. Internal virtual work in first Piola-Kirchhoff form,
@@ -7,21 +7,85 @@ frame, interpolated by the mesh's elements. Internal virtual work in first Piola
 
 with the St. Venant-Kirchhoff material, P = F S and S = lam tr(E) I + 2 mu E, exact at any rotation and displacement and
 meant for small strain, or the compressible Neo-Hooke one, P = mu (F - F^-T) + lam ln(det F) F^-T, for large strain.
+
+Stress is that of Cauchy and of von Mises, at nodes and at any material point. The factors are those of scipy, for
+sparse matrices of any mesh.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import ClassVar
 
 import numpy as np
-from scipy.sparse import bsr_matrix, csr_matrix, kron
+import scipy
+from scipy.sparse import bsr_matrix, csr_matrix, kron, spmatrix
+from scipy.sparse.linalg import LinearOperator, SuperLU, gcrotmk, splu
 
 from exudyn_ehd.solid.elements import blocks, kernels
 from exudyn_ehd.solid.elements.element import Element, Quadrature
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_number
+
+
+def sparse_factor(A: spmatrix, *, pivoting: float = 0.0) -> SuperLU:
+    """SuperLU of a matrix with a symmetric pattern, which keeps its diagonal as pivots from that share of a column on.
+
+    Raises
+    ------
+    RuntimeError
+        If the matrix is singular.
+    """
+    options = {"SymmetricMode": True}
+    return splu(A.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=pivoting, options=options)
+
+
+def held_solution(K: csr_matrix, nodes: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """Displacements of a body with three coordinates a node under nodal forces, both (n, k), with some nodes held.
+
+    Raises
+    ------
+    RuntimeError
+        If the stiffness matrix (n, n) of the rest is singular.
+    """
+    free = np.ones(K.shape[0], dtype=bool)
+    free[(3 * nodes[:, None] + np.arange(3)).ravel()] = False
+    factor = sparse_factor(K[free][:, free])
+
+    def solve(loads: np.ndarray) -> np.ndarray:
+        out = np.zeros_like(loads)
+        out[free] = factor.solve(np.ascontiguousarray(loads[free]))
+        return out
+
+    return solve
+
+
+def solve_by_products(
+    product: Callable[[np.ndarray], np.ndarray],
+    right: np.ndarray,
+    tolerance: float,
+    most: int,
+) -> np.ndarray:
+    """Return x (n,) with ``product(x) = right``: generalised minimal residual.
+
+    Parameters
+    ----------
+    product : function
+        A x, (n,) of an (n,) array.
+    right : (n,) array
+    tolerance : float
+        Norm of ``right - A x`` to reach.
+    most : int
+        Products at most.
+    """
+    if not np.linalg.norm(right) > tolerance:
+        return np.zeros_like(right)
+
+    A = LinearOperator((right.size, right.size), matvec=product, dtype=float)
+    x: np.ndarray = gcrotmk(A, right, rtol=0.0, atol=tolerance, m=most, k=0, maxiter=1)[0]
+    return x
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -275,3 +339,103 @@ def own_rule(where: str, element: Element, rule: Quadrature | None) -> Quadratur
             f"{where}.quadrature of a mesh of {element.name} must be {', '.join(element.rules)} or None, got {rule!r}."
         )
     return rule
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MaterialPoints:
+    """Points of the solid by element and natural coordinates.
+
+    Parameters
+    ----------
+    element : ndarray of int, shape (n,)
+    natural : ndarray, shape (n, 3)
+    gradient : ndarray, shape (n, nodes of an element, 3)
+        Of the shape functions along the reference positions [1/m].
+    """
+
+    element: np.ndarray
+    natural: np.ndarray
+    gradient: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StressRecovery:
+    """Stress of a mesh of one material.
+
+    Parameters
+    ----------
+    mesh : BushMesh
+        Reference positions.
+    material : SaintVenantKirchhoff
+    """
+
+    mesh: BushMesh
+    material: SaintVenantKirchhoff
+
+    def cauchy_at(self, points: MaterialPoints, u: np.ndarray) -> np.ndarray:
+        """Return sigma = F S F^T / det F, shape (n, 3, 3) [Pa], at material points; u has a row per mesh node [m]."""
+        values = np.asarray(u)[self.mesh.elements[points.element]]
+        return _cauchy(np.einsum("nai,naj->nij", values, points.gradient), self.material)
+
+    def von_mises_at(self, points: MaterialPoints, u: np.ndarray) -> np.ndarray:
+        """Return the von Mises stress, shape (n,) [Pa], at material points."""
+        return von_mises(self.cauchy_at(points, u))
+
+    def cauchy_at_nodes(self, u: np.ndarray) -> np.ndarray:
+        """Return the Cauchy stress at all nodes, shape (mesh nodes, 3, 3) [Pa].
+
+        Sampled at the 2 x 2 x 2 Gauss points, where the derivatives of the quadratic element are one order more
+        accurate than elsewhere, extrapolated trilinearly to the nodes, and averaged over the elements that share a
+        node; of tetrahedra at four points, linearly.
+        """
+        elements, gradient = self.mesh.elements, self.mesh.sample_gradients
+        samples = _cauchy(np.einsum("eai,eqaj->eqij", np.asarray(u)[elements], gradient), self.material)
+        at_nodes = np.einsum("aq,eqij->eaij", self.mesh.element.extrapolation, samples)
+        total = np.zeros((len(self.mesh.nodes), 3, 3))
+        np.add.at(total, elements, at_nodes)
+        count = np.bincount(elements.ravel(), minlength=len(total))
+        return total / count[:, None, None]
+
+    def von_mises_at_nodes(self, u: np.ndarray) -> np.ndarray:
+        """Return the von Mises stress of the averaged Cauchy stress at all nodes, shape (mesh nodes,) [Pa]."""
+        return von_mises(self.cauchy_at_nodes(u))
+
+    def locate(self, positions: np.ndarray) -> MaterialPoints:
+        """Find the material points at reference positions, shape (n, 3) [m].
+
+        Raises
+        ------
+        InputError
+            A position lies outside the solid.
+        """
+        positions = np.atleast_2d(np.asarray(positions, dtype=float))
+        corners, kind = self.mesh.nodes[self.mesh.elements], self.mesh.element
+        _, near = scipy.spatial.cKDTree(corners.mean(axis=1)).query(positions, k=min(27, len(corners)))
+        count = near.size // len(positions)
+        nodes, target = corners[near.ravel()], np.repeat(positions, count, axis=0)
+        natural = kind.solve(nodes, lambda x, slope, own: (x - target[own], slope))
+        outside = kind.outside(natural).reshape(-1, count)
+        best = outside.argmin(axis=1)
+        if (lost := outside.min(axis=1) > 1e-6).any():
+            raise InputError(
+                f"StressRecovery.locate positions must lie inside the solid, got {positions[lost][0].tolist()} m in "
+                "the reference configuration; a point on the cylinder between two nodes may lie a little outside the "
+                "quadratic faces: move it inward."
+            )
+        chosen = np.arange(len(positions)) * count + best
+        along, element = kind.shapes(natural[chosen])[1], near.ravel()[chosen]
+        jacobian = np.einsum("nar,nai->nir", along, corners[element])
+        gradient = np.einsum("nar,nri->nai", along, np.linalg.inv(jacobian))
+        return MaterialPoints(element=element, natural=natural[chosen], gradient=gradient)
+
+
+def von_mises(stress: np.ndarray) -> np.ndarray:
+    """Return sqrt(3/2 s:s), shape (...) [Pa], of stresses (..., 3, 3) with s their deviator."""
+    deviator = stress - np.einsum("...ii->...", stress)[..., None, None] / 3 * np.eye(3)
+    return np.sqrt(1.5 * np.einsum("...ij,...ij->...", deviator, deviator))
+
+
+def _cauchy(H: np.ndarray, material: SaintVenantKirchhoff) -> np.ndarray:
+    """Cauchy stress of displacement gradients H (..., 3, 3)."""
+    F = H + np.eye(3)
+    return material.first_piola(H) @ F.swapaxes(-1, -2) / np.linalg.det(F)[..., None, None]

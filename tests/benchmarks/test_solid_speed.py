@@ -10,7 +10,7 @@ import numba
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.elements.kinds import GAUSS27, IRONS14
+from exudyn_ehd.solid.elements.element import GAUSS27, IRONS14
 from tests.benchmarks.accuracy.costs.bushes import assembly_run as assembly
 from tests.benchmarks.accuracy.costs.bushes import deformed_solid
 

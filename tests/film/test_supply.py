@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.supply.areas import axial_span, placed
+from exudyn_ehd.film.supply.areas import axial_span, circle, placed, strength, strengths
 from exudyn_ehd.film.supply.cuts import SupplyMap
-from exudyn_ehd.film.supply.holes import circle, strength, strengths
 from exudyn_ehd.film.supply.rows import meeting_rows, supply_rows
 from tests.sampling import sample
 

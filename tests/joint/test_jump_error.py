@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from exudyn_ehd.joint.jump_error import errors_of_jumps
+from exudyn_ehd.joint.time_step import errors_of_jumps
 
 STEP = 1e-4
 

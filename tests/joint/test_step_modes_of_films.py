@@ -1,6 +1,6 @@
 """Modes of a mass on a film in time: the film's own linear response over one step, with what it remembers.
 
-Generalised alpha as Exudyn has it, and the rates of `exudyn_ehd.joint.step_rates`. The mass moves along the
+Generalised alpha as Exudyn has it, and the rates of `exudyn_ehd.joint.time_step`. The mass moves along the
 eccentricity, so that no cross stiffness feeds it.
 """
 
@@ -12,7 +12,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.step_rates import WEIGHTS
+from exudyn_ehd.joint.time_step import WEIGHTS
 from tests.sampling import sample
 
 C, SPEED = 25e-6, 300.0

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from exudyn_ehd.joint.step_rates import WEIGHTS, next_start
+from exudyn_ehd.joint.time_step import WEIGHTS, next_start
 
 RATES = slice(4, 8)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.step_rates import next_start
+from exudyn_ehd.joint.time_step import next_start
 
 CLOSURES = {
     "full": ehd.FullSommerfeld(), "gumbel": ehd.Gumbel(), "swift-stieber": ehd.SwiftStieber(),

@@ -6,11 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.elements.kinds import GAUSS8, GAUSS27, IRONS14
+from exudyn_ehd.solid.elements.element import GAUSS8, GAUSS27, IRONS14
 from exudyn_ehd.solid.loads import DeadPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.stress import StressRecovery
-from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
+from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, StressRecovery, TotalLagrange
 from tests.sampling import sample
 from tests.solid_equilibrium import equilibrium
 from tests.solid_vibrations import eigenfrequencies

@@ -9,7 +9,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.solid.fe_bore import OUTSIDE, ReducedBore, quadrature
-from exudyn_ehd.solid.unrolled import patch
+from exudyn_ehd.solid.mesh import patch
 
 RADIUS, LENGTH, AROUND, ALONG = 0.03, 0.06, 16, 3
 

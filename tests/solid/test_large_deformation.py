@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.solid.elements.kinds import GAUSS8, GAUSS27, IRONS14
+from exudyn_ehd.solid.elements.element import GAUSS8, GAUSS27, IRONS14
 from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange

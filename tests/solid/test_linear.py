@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csc_matrix, diags, random_array
 
-from exudyn_ehd.solid.linear import solve_by_products, sparse_factor
+from exudyn_ehd.solid.total_lagrange import solve_by_products, sparse_factor
 
 
 @pytest.mark.parametrize("seed", range(12))

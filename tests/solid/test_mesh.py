@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.elements.kinds import GAUSS27, HEX20, HEX_EDGES
+from exudyn_ehd.solid.elements.element import GAUSS27, HEX20, HEX_EDGES
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.mesh_import import OnCylinder, OnPlane, mesh_from_arrays, mesh_from_fem
 from exudyn_ehd.status import InputError

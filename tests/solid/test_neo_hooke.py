@@ -5,11 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.elements.kinds import GAUSS27
+from exudyn_ehd.solid.elements.element import GAUSS27
 from exudyn_ehd.solid.loads import FollowerPressure
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.stress import StressRecovery
-from exudyn_ehd.solid.total_lagrange import NeoHooke, SaintVenantKirchhoff, TotalLagrange
+from exudyn_ehd.solid.total_lagrange import NeoHooke, SaintVenantKirchhoff, StressRecovery, TotalLagrange
 from tests.solid_equilibrium import EquilibriumError, equilibrium
 
 RUBBER = NeoHooke(youngs_modulus=5e6, poisson_ratio=0.45, density=1100.0)

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.elements.kinds import HEX20
+from exudyn_ehd.solid.elements.element import HEX20
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.stress import StressRecovery, von_mises
-from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
+from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, StressRecovery, von_mises
 from exudyn_ehd.status import InputError
 
 MATERIAL = SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)

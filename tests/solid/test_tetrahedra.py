@@ -9,11 +9,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush
-from exudyn_ehd.solid.elements.kinds import HAMMER4, IRONS14, TET_EDGES, WALKINGTON14
+from exudyn_ehd.solid.elements.element import HAMMER4, IRONS14, TET_EDGES, WALKINGTON14
 from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, Gravity, SurfaceLoad, dead_forces
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.stress import StressRecovery
-from exudyn_ehd.solid.total_lagrange import NeoHooke, SaintVenantKirchhoff, TotalLagrange
+from exudyn_ehd.solid.total_lagrange import NeoHooke, SaintVenantKirchhoff, StressRecovery, TotalLagrange
 from exudyn_ehd.status import InputError
 from tests.solid_equilibrium import equilibrium
 from tests.solid_tetrahedra import tet_mesh

@@ -7,10 +7,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.solid.elements.blocks import smallest_volume_ratio
-from exudyn_ehd.solid.elements.kinds import GAUSS8, GAUSS27, HEX20, HEX_EDGES, HEX_NODES, IRONS14
+from exudyn_ehd.solid.elements.element import GAUSS8, GAUSS27, HEX20, HEX_EDGES, HEX_NODES, IRONS14
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.stress import StressRecovery
-from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
+from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, StressRecovery, TotalLagrange
 from exudyn_ehd.status import InputError
 from tests.sampling import sample
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.surfaces.asperity import AsperityContact, greenwood_tripp_integral
+from exudyn_ehd.film.surfaces.roughness import AsperityContact, greenwood_tripp_integral
 
 with open(Path(__file__).parent / "data" / "greenwood_tripp_F_functions.csv", encoding="utf-8") as _file:
     ROWS = [{k: float(v) for k, v in row.items()} for row in csv.DictReader(_file)]

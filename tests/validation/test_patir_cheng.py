@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from exudyn_ehd.film.surfaces.patir_cheng import (
+from exudyn_ehd.film.surfaces.roughness import (
     PATTERNS,
     pressure_flow_factor,
     shear_flow_factor,

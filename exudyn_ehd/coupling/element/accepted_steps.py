@@ -26,11 +26,11 @@ from exudyn_ehd.coupling.exudyn_solvers import GapWatch
 from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, PEAK_PRESSURE, JointHistory
 from exudyn_ehd.coupling.record.record import FilmRecorder, Record
-from exudyn_ehd.joint.audit import ringing
+from exudyn_ehd.joint.audit.resolution import RingingWatch, warn_of_ringing
 from exudyn_ehd.joint.balance.limits import HOT, lacks_oil
 from exudyn_ehd.joint.model.results import FilmFields
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.step_rates import StepStart, next_start
+from exudyn_ehd.joint.time_step import StepStart, next_start
 from exudyn_ehd.status import OverloadWarning, Status, warn_user
 
 # Largest difference, over a step, between the start of a run and the end of the previous one, up to which the run
@@ -236,7 +236,7 @@ class AcceptedSteps:
         self._chatter = doubts.ChatterWatch(bearing) if exudyn_solvers.is_explicit(solver) else None
         area = 2.0 * bearing.journal_radius * bearing.length
         may_ring = solver is None or exudyn_solvers.is_implicit(solver)
-        self._ringing = ringing.RingingWatch(area) if may_ring else None
+        self._ringing = RingingWatch(area) if may_ring else None
         self._turning = doubts.TurnWatch(mbs, self.film.sides, solver)
         doubts.warn_of_radius(solver)
         self._may_starve = self._uses_memory and lacks_oil(bearing)
@@ -300,7 +300,7 @@ class AcceptedSteps:
             force = trial.found.wrench[: failures.axes].tolist()
             rang = self._ringing.rings
             if self._ringing.take(start, *force) and not rang:
-                ringing.warn(failures.name, self._ringing, starts_well=self.in_own_run)
+                warn_of_ringing(failures.name, self._ringing, starts_well=self.in_own_run)
             if self._ringing.throws:
                 raise failures.thrown(start, trial, *self._ringing.worst)
         if self._chatter is not None and self._chatter.sees_chatter(start, trial.motion):

@@ -37,7 +37,7 @@ from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluati
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.tangent.nodes import complete, resultant, spread_matrix
 from exudyn_ehd.solid.bush import BoreModes
-from exudyn_ehd.solid.journal.turning import TurningJournal
+from exudyn_ehd.solid.turning_journal import TurningJournal
 from exudyn_ehd.status import Status
 
 

@@ -24,8 +24,7 @@ from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.elements.element import face_of
 from exudyn_ehd.solid.loads import BushLoad
 from exudyn_ehd.solid.mesh import BushMesh
-from exudyn_ehd.solid.stress import StressRecovery
-from exudyn_ehd.solid.total_lagrange import TotalLagrange
+from exudyn_ehd.solid.total_lagrange import StressRecovery, TotalLagrange
 from exudyn_ehd.status import InputError, require_type, require_vector
 
 

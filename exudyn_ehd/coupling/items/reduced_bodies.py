@@ -34,7 +34,7 @@ from exudyn_ehd.coupling.items.bodies import Item
 from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide, bind, floating_change, node_side
 from exudyn_ehd.solid.fe_bore import FEBore, FESurface, ReducedBore, bore_faces, find_bore
-from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
+from exudyn_ehd.solid.turning_journal import FEJournal, TurningJournal
 from exudyn_ehd.status import SMALL, InputError
 
 

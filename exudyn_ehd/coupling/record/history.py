@@ -127,7 +127,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
     motion : (n, 10) [m, rad, m/s, rad/s]
         Motion of the journal against the housing: x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w. At the place z along
         the bearing the journal's axis is at (x + bx z, y + by z): x and y in m, the slopes bx and by in rad. x_t to
-        by_t, m/s and rad/s, are the rates of these four that the film takes (`exudyn_ehd.joint.step_rates`); omega,
+        by_t, m/s and rad/s, are the rates of these four that the film takes (`exudyn_ehd.joint.time_step`); omega,
         rad/s, is the spin about z, w, m/s, the velocity along z.
     eccentricity : (n, 2) [m]
         Position of the journal's axis in the mid-plane. Along x and y from the bore's axis, the first two of

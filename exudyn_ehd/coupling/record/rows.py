@@ -41,7 +41,7 @@ from exudyn_ehd.coupling.record.history import (
     TIME,
     WIDTH,
 )
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.step_error import BALL, FIRST, JOURNAL, FilmLoad, errors_behind, no_error
 from exudyn_ehd.status import POSITIVE, ROUNDING, Checked, InputError, RunError, require_integer, require_type

@@ -16,6 +16,7 @@ from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import HeldBore, SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.newton import SHARE
+from exudyn_ehd.joint.audit.resolution import warn_of_grid
 from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.balance.newton import (
     FREE_STEP,
@@ -25,7 +26,6 @@ from exudyn_ehd.joint.balance.newton import (
     settled_history,
 )
 from exudyn_ehd.joint.balance.position import first_guess
-from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.dynamic_stiffness import (

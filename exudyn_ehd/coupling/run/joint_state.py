@@ -18,9 +18,9 @@ from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.joint.balance.limits import HIGHEST_PEAK
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
-from exudyn_ehd.joint.step_rates import WEIGHTS, StepStart
+from exudyn_ehd.joint.time_step import WEIGHTS, StepStart
 from exudyn_ehd.solid.fe_bore import ReducedBore
-from exudyn_ehd.solid.journal.turning import TurningJournal
+from exudyn_ehd.solid.turning_journal import TurningJournal
 from exudyn_ehd.status import SMALL, InputError, require_number, require_type, warn_user
 from exudyn_ehd.storage import fingerprint
 
@@ -43,7 +43,7 @@ class JointState:
     rows : (n, k) array
         The record of accepted steps up to that time.
     begin : StepStart or None
-        Start of the next step, from which the film's rates are computed (`exudyn_ehd.joint.step_rates`); None if the
+        Start of the next step, from which the film's rates are computed (`exudyn_ehd.joint.time_step`); None if the
         film uses the velocities.
     modes : (p, k) array or None
         Displacements and stiffness of the bore's modes, by which a joint with other modes rejects the state.

@@ -24,8 +24,8 @@ from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
-from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.joint.thrust import ThrustModel, seen_by_faces
+from exudyn_ehd.joint.time_step import StepStart
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 from exudyn_ehd.storage import read_arrays, replacing, require_path
 

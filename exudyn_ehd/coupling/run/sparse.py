@@ -53,7 +53,7 @@ from exudyn_ehd.coupling.exudyn_solvers import StepControl, idle, require_contro
 from exudyn_ehd.coupling.run.newton import StartGuess, state_of
 from exudyn_ehd.coupling.run.solve import joints_of, require_run, running
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
-from exudyn_ehd.solid.linear import solve_by_products, sparse_factor
+from exudyn_ehd.solid.total_lagrange import solve_by_products, sparse_factor
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_integer
 
 # Exudyn's stubs lack the self of its solvers' methods.

@@ -24,7 +24,7 @@ import numpy as np
 from numba import njit
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.film.kernels import FAST, I1, I4, NO, U0, U1, U2, YES, unsigned
+from exudyn_ehd.compilation import FAST, I1, I4, NO, U0, U1, U2, YES, unsigned
 
 _FUSE = {"contract", "nsz", "arcp"}
 

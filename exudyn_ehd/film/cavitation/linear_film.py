@@ -28,13 +28,11 @@ import numpy as np
 from numba import njit
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.film.banded.assemble import dense_band
-from exudyn_ehd.film.banded.factors import assemble_band, factor_band
-from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.factors import assemble_band, factor_band, number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
-from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.gradients import Gradients
+from exudyn_ehd.film.banded.workspace import Workspace, dense_band
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.reynolds.gap import Gradients
 from exudyn_ehd.film.reynolds.links import LinkFlux, linear_residual
 
 

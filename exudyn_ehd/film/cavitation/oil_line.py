@@ -38,9 +38,9 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.cavitation.rupture_line import line_gradients
-from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.grid import Mesh
 from exudyn_ehd.film.reynolds.balance import FilmTerms
+from exudyn_ehd.film.reynolds.gap import Gradients
 from exudyn_ehd.film.reynolds.links import LinkFlux
 
 # s from which on the fill of a vertex is 1. Larger values delay the response of the pressure to short motions, smaller

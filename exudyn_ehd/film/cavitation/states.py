@@ -25,9 +25,9 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.compilation import FAST
 from exudyn_ehd.film.cavitation.oil_line import FILLED, curve_of, missing_fill
 from exudyn_ehd.film.cavitation.rupture_line import SMALLEST_S
-from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.reynolds.balance import terms_of
 
 # Largest p / p_max below 0, and fill above its bound, at which a vertex keeps its side: some thousand units of

@@ -4,5 +4,4 @@ Module map
 ----------
 options     options of a bearing: LumpedThermal, FilmEnergy, Conduction; finite volumes of a wall
 energy      energy equation on the film's grid; heat through the film's surfaces; viscosity at its temperatures
-across      two temperatures across the film, and their viscosity
 """

@@ -32,16 +32,23 @@ the surfaces are
 
 from T(y) = s_1 + b y + d y^2 with the mean T, q_1 = k T'(0) and q_2 = -k T'(h). Uniform heating gives this profile.
 
+A film with two unknown temperatures across it has a cubic in place of the parabola, see `exudyn_ehd.joint.heat.across`.
+
 Symbols: P true and q transformed scaled pressure, kx / kz conductances and fx / fz Couette fluxes with their metric, A
 areas.
 """
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drop_weights, drops, following, to_ends
+
+# Heights of Lobatto's four points, over the gap.
+LOBATTO = np.array([0.0, 0.5 - 0.5 / math.sqrt(5.0), 0.5 + 0.5 / math.sqrt(5.0), 1.0])
 
 
 class ViscosityField(FluxEffect):
@@ -74,6 +81,21 @@ class ViscosityField(FluxEffect):
         ratio_out[:] = self.ratio
         ratio_h_out[:] = 0.0
         ratio_v_out[:] = 0.0
+
+
+def cubic_at(at: np.ndarray) -> np.ndarray:
+    """Coefficients (k, 4) of s, a, T_b and T_j in the temperatures at heights (k,)."""
+    x = 2.0 * at - 1.0
+    p2, p3 = 0.5 * (3.0 * x**2 - 1.0), 0.5 * (5.0 * x**3 - 3.0 * x)
+    return np.column_stack((1.0 - p2, x - p3, 0.5 * (p2 - p3), 0.5 * (p2 + p3)))
+
+
+_AT_LOBATTO = cubic_at(LOBATTO)
+
+
+def at_points(fields: np.ndarray) -> np.ndarray:
+    """Temperatures (n, m, 4) at Lobatto's points of mean, tilt and both surfaces (4, n, m)."""
+    return np.moveaxis(fields, 0, -1) @ _AT_LOBATTO.T
 
 
 def film_heat(P: np.ndarray, q: np.ndarray, k: np.ndarray) -> np.ndarray:
@@ -156,7 +178,7 @@ def outside_flows(qz: np.ndarray, balance: np.ndarray, fixed: np.ndarray, unbrok
 
 @njit(cache=True)
 def transport_slopes(qx, qz, diagonal, T, link_z, held, slopes_out):
-    """Derivatives (5, n m) of the energy equation's system, in the layout of `exudyn_ehd.film.banded.assemble`.
+    """Derivatives (5, n m) of the energy equation's system, in the layout of `exudyn_ehd.film.banded.workspace`.
 
     The heat over a link is its flow times the temperature upstream plus, in z, a share of the difference to the
     temperature downstream. T times the balance of mass is subtracted from the balance of energy: the net outflow of a

@@ -29,6 +29,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from exudyn_ehd.film.heat.energy import at_points
 from exudyn_ehd.status import (
     KELVIN,
     NOT_NEGATIVE,
@@ -401,9 +402,6 @@ class Walls:
         """Temperatures of a film with these walls, K: its mean (n, m), or (n, m, 4) at Lobatto's points across it."""
         if self.across is None:
             return np.asarray(temperature)
-        # imported here, since only films with a profile across them need it
-        from exudyn_ehd.film.heat.across import at_points
-
         return at_points(np.array([temperature, *self.across]))
 
     def numbers(self, area: np.ndarray) -> dict[str, float]:

@@ -27,7 +27,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.kernels import FAST
+from exudyn_ehd.compilation import FAST
 from exudyn_ehd.film.lubricant.pressure_viscosity import (
     LARGEST_PRESSURE,
     LawTable,

@@ -26,7 +26,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.kernels import FUSED
+from exudyn_ehd.compilation import FUSED
 
 # Intervals of the fluidity's table for every factor of two in 1 + |T|^2; must be a power of two. Scaled shear rate at
 # the table's end; at higher rates the fluidity is constant.

@@ -6,7 +6,7 @@
 Sliding, squeeze and pressure flow thin the oil together: `exudyn_ehd.film.lubricant.shear_profile` integrates the
 profile across the gap. A link in theta or z then carries ``V H - a H^3 dP/ds``; the ratio a depends on the gap, the
 speed, the link's own gradient, and the gradient across it, the mean of those at its two vertices. The film so becomes
-nonlinear in its pressure (`exudyn_ehd.film.solvers.liner.film`). Couette flux H unchanged, because pressure flow is odd
+nonlinear in its pressure (`exudyn_ehd.film.solvers.liner`). Couette flux H unchanged, because pressure flow is odd
 in the gradient; the shear on the walls is ``tau_m -+ (h / 2) dp/dx``, its mean ``tau_m = ratio mu_0 U / h``.
 
 Two effects are omitted. Axial sliding, which is slow compared with the rotation, does not thin the oil; its viscosity
@@ -221,7 +221,7 @@ class ShearThinning(LinkLaw):
 
     def response(self) -> tuple[np.ndarray, ...]:
         """Fields of the last call of `apply` for Newton's matrix, as `add_tangents` and `add_corners` of
-        `exudyn_ehd.film.banded.assemble` take them."""
+        `exudyn_ehd.film.banded.workspace` take them."""
         along, across = self.found[:, 3].copy(), self.found[:, 4] * self.lengths
         if self.cuts is not None:
             across /= self.cuts

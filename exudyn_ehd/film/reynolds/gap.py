@@ -1,4 +1,4 @@
-"""Gap of a tilted rigid journal in a bore, slopes of additional gap terms, and gaps with steps.
+"""Gap of a rigid journal in a bore, also with steps, and derivatives of a film's balances to the gap.
 
 ``H = 1 - (x + bx z) cos theta - (y + by z) sin theta (+ extra)`` in scaled lengths: x, y divided by c; z by R; bx, by
 multiplied by R/c. Paper, Eqs. (3), (5), (7). The gap's rate at fixed theta is the same expression in the rates, without
@@ -18,15 +18,31 @@ or, with the pressure pf on the face eliminated,
 
 The flow over a step is then exact if the gap is constant on both sides; for a smooth gap it is of second order. Without
 this model the mean gap of both vertices is used, which is of first order at a step.
+
+Derivatives of balances and other sums over the film to the gaps, at fixed unknowns
+-----------------------------------------------------------------------------------
+Let DX and DZ be the derivatives of a link's flow to its gap (`exudyn_ehd.film.reynolds.balance`), AC and AR those of
+the storage to the gap and to its rate. The balance of vertex (i, j) between rigid surfaces changes by
+
+    dr = DX_i dHF_i - DX_i-1 dHF_i-1 + DZ_j dHZ_j - DZ_j-1 dHZ_j-1 + AC dH + AR dH_t,   HF gap on links in theta,
+    HZ mean over the two ends of a link in z,
+
+and similarly with the speeds of the surfaces. With an elastic liner the flow over a link also depends on the gaps at
+its ends. A rupture line inside the cells adds entries of the same form. The gap is a sum of shapes,
+``H = 1 + sum q_k S_k``, whose coefficients q are the journal's pose or a bore's coordinates. Derivatives to q are those
+to the gap times S, at vertices and on links. The gradient of a functional with the adjoint lam is ``-lam . dr``.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
+from scipy.sparse import csr_matrix
 
+from exudyn_ehd.compilation import FAST
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.kernels import FAST
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 
 
@@ -135,3 +151,218 @@ def stepped_links(
     for axis, g, c in ((0, gx_out, cx_out), (1, gz_out, cz_out)):
         b, b3 = np.roll(H, -1, axis), np.roll(H3, -1, axis)
         g[:], c[:] = 2.0 * H3 * b3 / (H3 + b3), (H * b3 + b * H3) / (H3 + b3)
+
+
+# Factors that convert `Gradients.by` (rows) to derivatives to values at vertices (columns: the vertex, the next and the
+# previous one in theta, the next and the previous one in z): for the gap, and for the rate. The gap on a link in theta
+# is the mean of both ends.
+_BY_GAP, _BY_RATE = np.zeros((2, 10, 5))
+_BY_GAP[0, :2] = _BY_GAP[1, :3:2] = 0.5
+_BY_GAP[[2, 3, 4, 8, 9], [0, 3, 4, 1, 2]] = _BY_RATE[5, 0] = 1.0
+
+
+class Gradients(NamedTuple):
+    """Derivatives of sums over a film, in c entries.
+
+    Attributes
+    ----------
+    rows, places : (c,) int arrays
+        Number of the sum to which an entry is added, such as the balance of an unknown, and flat index of its vertex.
+    by : (10, c) array
+        Derivatives, by row: (0, 1) to the gaps on the links in theta behind and before the vertex; (2, 3, 4) to the
+        gaps at the vertex, and at the next and the previous one in z; (5) to the rate of the gap at the vertex; (6, 7)
+        to vx and vz; (8, 9) to the gaps at the next and the previous vertex in theta.
+    """
+
+    rows: np.ndarray
+    places: np.ndarray
+    by: np.ndarray
+
+    def weighed(self, weights: np.ndarray, rows: np.ndarray | None = None) -> Gradients:
+        """Multiply the entries by ``weights`` (n, m) and add each to the sum ``rows`` (n m,) of its vertex; None: one
+        sum over all."""
+        at = np.zeros_like(self.places) if rows is None else rows[self.places]
+        return Gradients(at, self.places, self.by * weights.reshape(-1)[self.places])
+
+    def to_true_gap(self, slope: np.ndarray, bend: np.ndarray, face_slope: np.ndarray) -> Gradients:
+        """Convert derivatives to the film's gap of a limiter into derivatives to the true gap.
+
+        ``slope``, ``face_slope`` (n, m): derivatives of the film's gap to the true gap at vertices and on links in
+        theta; ``bend``: second derivative at vertices, times the rate of the true gap.
+        """
+        (n, m), by = slope.shape, self.by.copy()
+        i, j = np.divmod(self.places, m)
+        by[0] *= face_slope[i, j]
+        by[1] *= face_slope[i - 1, j]
+        by[2] = by[2] * slope[i, j] + by[5] * bend[i, j]
+        by[3] *= slope[i, np.minimum(j + 1, m - 1)]
+        by[4] *= slope[i, np.maximum(j - 1, 0)]
+        by[5] *= slope[i, j]
+        by[8] *= slope[(i + 1) % n, j]
+        by[9] *= slope[i - 1, j]
+        return self._replace(by=by)
+
+    def columns(self, shapes: np.ndarray, count: int) -> np.ndarray:
+        """Derivatives (10, count) of the sums to (scaled pose, scaled rates, vx, vz); ``shapes``:
+        `FilmGrid.gap_shapes`."""
+        out = np.zeros((10, count))
+        add_columns(self.rows, self.places, self.by, shapes, out)
+        return out
+
+    def matrix(self, shape: tuple[int, int], count: int, by_gap: float, by_rate: float) -> csr_matrix:
+        """Return ``by_gap d/dH + by_rate d/dH_t`` (count, n m) of the sums, to gaps and rates at the vertices."""
+        (n, m), at = shape, self.places
+        column = at // m
+        next_x, last_x = at + np.where(column + 1 < n, m, m - n * m), at - np.where(column > 0, m, m - n * m)
+        # entries for vertices beyond the ends are 0
+        around = np.stack((at, next_x, last_x, np.minimum(at + 1, n * m - 1), np.maximum(at - 1, 0)), axis=1)
+        weights = self.by.T @ (by_gap * _BY_GAP + by_rate * _BY_RATE)
+        return csr_matrix((weights.ravel(), (np.repeat(self.rows, 5), around.ravel())), shape=(count, n * m))
+
+    def fields(self, rows: np.ndarray, shape: tuple[int, int]) -> tuple[np.ndarray, ...]:
+        """Gradients ``-rows . dr`` of k functionals with the weights ``rows`` (k, count).
+
+        Returns
+        -------
+        cell, face, rate : (k, n, m) arrays
+            Derivatives to the gaps at vertices and on links in theta, and to the gap's rate at vertices.
+        speed : (k, 2) array
+            Derivatives to vx and vz.
+        """
+        out = *np.zeros((3, len(rows), *shape)), np.zeros((len(rows), 2))
+        _add_fields(rows, self.rows, self.places, self.by, *out)
+        return out
+
+
+def join(a: Gradients, b: Gradients) -> Gradients:
+    """Return the entries of both."""
+    rows, places = np.concatenate((a.rows, b.rows)), np.concatenate((a.places, b.places))
+    return Gradients(rows, places, np.concatenate((a.by, b.by), axis=1))
+
+
+@njit(cache=True, fastmath=FAST)
+def _ends(by_h, by_d, a, b, follows, gap):
+    """Return the derivatives of a link's flow to the undeformed gaps at its ends a and b.
+
+    ``by_h``, ``by_d``: derivatives to the link's gap and to d, see `exudyn_ehd.film.reynolds.balance`. Row
+    ``gap`` of ``follows`` is the derivative of the gap to the undeformed one, row 1 that of E.
+    """
+    here, there = by_h * follows[gap, a] - by_d * follows[1, a], by_h * follows[gap, b] + by_d * follows[1, b]
+    return 0.5 * here, 0.5 * there
+
+
+@njit(cache=True, fastmath=FAST)
+def link_rows(order, count, m, by, by_speed, follows, storage, out):
+    """Set the derivatives ``out`` (10, count) of the balances at vertices ``order``, see `Gradients.by`.
+
+    Parameters
+    ----------
+    by, by_speed : (4, n m) and (3, n m) arrays
+        Derivatives of the links' flows, see `exudyn_ehd.film.reynolds.balance`.
+    follows : (4, n m) array or None
+        With a liner: derivatives of deflection, E and film gap to the undeformed gap, and of the film's gap on a link
+        to the true gap there; None: rigid surfaces.
+    storage : two (n, m) arrays
+        Derivatives of the storage to the gap's rate and to the gap.
+    """
+    rate, stored, size, start = storage[0].reshape(-1), storage[1].reshape(-1), by.shape[1], 0
+    for r in range(count):
+        c = order[r]
+        j = c - start
+        if j < 0 or j >= m:  # rows of a column follow each other: one division per column
+            j = c % m
+            start = c - j
+        back = c - m if c >= m else c - m + size
+        face, before, own = by[0, c], by[0, back], stored[c]
+        vx, vz = by_speed[0, c] - by_speed[0, back], 0.0
+        out[3, r] = out[4, r] = out[8, r] = out[9, r] = 0.0
+        if follows is not None:
+            face, before = face * follows[3, c], before * follows[3, back]
+            here, there = _ends(face, by[1, c], c, c + m if c + m < size else c + m - size, follows, 0)
+            behind, at = _ends(before, by[1, back], back, c, follows, 0)
+            own += here - at
+            out[8, r], out[9, r] = there, -behind
+        if j + 1 < m:
+            here, there = 0.5 * by[2, c], 0.5 * by[2, c]
+            if follows is not None:
+                here, there = _ends(by[2, c], by[3, c], c, c + 1, follows, 2)
+            own += here
+            out[3, r] = there
+            vx += by_speed[2, c]
+            vz += by_speed[1, c]
+        if j > 0:
+            behind, at = 0.5 * by[2, c - 1], 0.5 * by[2, c - 1]
+            if follows is not None:
+                behind, at = _ends(by[2, c - 1], by[3, c - 1], c - 1, c, follows, 2)
+            own -= at
+            out[4, r] = -behind
+            vx -= by_speed[2, c - 1]
+            vz -= by_speed[1, c - 1]
+        out[0, r], out[1, r], out[2, r], out[5, r], out[6, r], out[7, r] = face, -before, own, rate[c], vx, vz
+
+
+@njit(cache=True, fastmath=FAST)
+def add_columns(rows, places, by, shapes, out):
+    """Add the derivatives (10, count) of the sums to the motion to ``out``, see `Gradients.columns`."""
+    at, link = shapes[0].reshape(-1), shapes[1].reshape(-1)
+    # flat unsigned indices need no check of their sign
+    size, column, row = np.uint64(at.size), np.uint64(4 * shapes.shape[2]), np.uint64(4)
+    for e in range(rows.size):
+        r, c = rows[e], row * np.uint64(places[e])
+        on, back = (
+            c + column if c + column < size else c + column - size,
+            c - column if c >= column else c + size - column,
+        )
+        # entries for vertices beyond the ends are 0
+        above, below = c + row if c + row < size else c, c - row if c >= row else c
+        f0, f1, own, a0, a1, rate, x0, x1 = (
+            by[0, e],
+            by[1, e],
+            by[2, e],
+            by[3, e],
+            by[4, e],
+            by[5, e],
+            by[8, e],
+            by[9, e],
+        )
+        for q in range(4):
+            k = np.uint64(q)
+            gaps = f0 * link[c + k] + f1 * link[back + k] + own * at[c + k] + a0 * at[above + k] + a1 * at[below + k]
+            out[q, r] += gaps + x0 * at[on + k] + x1 * at[back + k]
+            out[4 + q, r] += rate * at[c + k]
+        out[8, r] += by[6, e]
+        out[9, r] += by[7, e]
+
+
+@njit(cache=True)
+def _add_fields(lam, rows, places, by, cell, face, rate, speed):
+    """Add the gradients of `Gradients.fields`."""
+    _, n, m = cell.shape
+    for e in range(rows.size):
+        i, j = places[e] // m, places[e] % m
+        # entries for vertices beyond the ends are 0
+        on, back, above, below = (i + 1) % n, (i - 1) % n, min(j + 1, m - 1), max(j - 1, 0)
+        for k in range(len(lam)):
+            w = -lam[k, rows[e]]
+            face[k, i, j] += w * by[0, e]
+            face[k, back, j] += w * by[1, e]
+            cell[k, i, j] += w * by[2, e]
+            cell[k, i, above] += w * by[3, e]
+            cell[k, i, below] += w * by[4, e]
+            cell[k, on, j] += w * by[8, e]
+            cell[k, back, j] += w * by[9, e]
+            rate[k, i, j] += w * by[5, e]
+            speed[k, 0] += w * by[6, e]
+            speed[k, 1] += w * by[7, e]
+
+
+@njit(cache=True, fastmath=FAST)
+def functional_gradients(lam, columns, out):
+    """Set the gradients ``-lam . dr`` (k, 10) of k functionals with the adjoints lam (k, count), for dr (10, count)."""
+    for k in range(lam.shape[0]):
+        own = lam[k]
+        for q in range(columns.shape[0]):
+            column, total = columns[q], 0.0
+            for r in range(own.size):
+                total -= own[r] * column[r]
+            out[k, q] = total

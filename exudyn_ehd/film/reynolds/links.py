@@ -48,8 +48,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.compilation import FAST, U0, U1, unsigned
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.kernels import FAST, U0, U1, unsigned
 
 
 class LinkFlux(NamedTuple):

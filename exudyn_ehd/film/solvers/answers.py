@@ -8,18 +8,17 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import block_array, csc_matrix, diags_array
 
-from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.substitution import solve_columns, solve_ldl, solve_lu, solve_lu_transposed
-from exudyn_ehd.film.gradients import Gradients, join, link_rows
+from exudyn_ehd.film.banded.workspace import dense_band
+from exudyn_ehd.film.cavitation.rupture_line import AtLine, undeformed
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
-from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
+from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, link_derivatives
+from exudyn_ehd.film.reynolds.gap import Gradients, join, link_rows
 from exudyn_ehd.film.reynolds.links import ShearFactor, linear_residual
 from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
-from exudyn_ehd.film.solvers.liner.film import LinerFilm
-from exudyn_ehd.film.solvers.liner.line import AtLine, undeformed
+from exudyn_ehd.film.solvers.liner import LinerFilm
 from exudyn_ehd.film.solvers.sets import factor_solution
 from exudyn_ehd.film.supply.restrictors import Reservoirs, add_border
 

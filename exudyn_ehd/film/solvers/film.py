@@ -28,11 +28,10 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.closures import Closure
+from exudyn_ehd.film.cavitation.closures import Closure, FilmSystem
 from exudyn_ehd.film.cavitation.oil_line import OilLine
-from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
+from exudyn_ehd.film.cavitation.rupture_line import FilmLine, RuptureLine
 from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL, RUPTURE
-from exudyn_ehd.film.cavitation.system import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityField
 from exudyn_ehd.film.lubricant.pressure_viscosity import law_at
@@ -47,7 +46,6 @@ from exudyn_ehd.film.reynolds.links import (
     right_hand_side,
     set_links,
 )
-from exudyn_ehd.film.solvers.liner.line import FilmLine
 from exudyn_ehd.film.supply.restrictors import seal_ends
 
 

@@ -8,16 +8,15 @@ from __future__ import annotations
 
 from numba import njit
 
-from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble, dense_band
-from exudyn_ehd.film.banded.factors import assemble_band, factor_band, factor_lu
-from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
+from exudyn_ehd.film.banded.factors import assemble_band, factor_band, factor_lu, number_cells, number_with_corners
 from exudyn_ehd.film.banded.substitution import solve_ldl_one, solve_lu_one
+from exudyn_ehd.film.banded.workspace import add_corners, add_tangents, assemble, dense_band
 from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_of
 from exudyn_ehd.film.cavitation.states import RUPTURE, add_sink_slopes
 from exudyn_ehd.film.lubricant.density import density_slope_at
 from exudyn_ehd.film.reynolds.balance import film_slopes, oil_links, terms_of
-from exudyn_ehd.film.solvers.liner.elements import Rates, add_gap_slopes, load_of, slopes_of
-from exudyn_ehd.film.solvers.liner.winkler import find_slopes
+from exudyn_ehd.film.solvers.winkler import find_slopes
+from exudyn_ehd.film.solvers.winkler_kernels import Rates, add_gap_slopes, load_of, slopes_of
 
 # Smallest difference between largest and smallest pressure, over the scaled speed (the pressure scale of a gap of one
 # clearance). Smaller differences are round-off of a centred journal, and are replaced by this one. Larger values reuse

@@ -7,7 +7,7 @@ without a prescribed pressure has an unknown. In a film of Swift and Stieber onl
 is removed from it when its u falls below 0, and added to it when more oil flows into the vertex than out of it.
 
 Between rigid surfaces at constant density, every matrix is a column diagonally dominant M-matrix, for any active set.
-So the film exists and is unique (see `exudyn_ehd.film.cavitation.system` for the exceptions).
+So the film exists and is unique (see `exudyn_ehd.film.cavitation.closures` for the exceptions).
 
 The first step is a chord step with the factor of the previous film. If the film has hardly changed, all steps are chord
 steps. Their contraction rate gives an estimate of the error (E. Hairer, G. Wanner, Solving Ordinary Differential
@@ -29,7 +29,7 @@ Arguments that belong together are plain tuples: numba takes longer to inspect a
 - ``state``: (u, pressures above the cavity's, fills), (n, m) each, fills None without mass conservation;
 - ``oil``: (fill, rho, drho/dP); fill is None without mass conservation, rho and drho/dP at constant density;
 - ``density``: `DensityField.fields` between rigid surfaces, else None;
-- ``feedback``: (elements, links) of `exudyn_ehd.film.solvers.liner.winkler.find_slopes`, None where neither gaps nor
+- ``feedback``: (elements, links) of `exudyn_ehd.film.solvers.winkler.find_slopes`, None where neither gaps nor
   conductances follow the pressure;
 - ``thin``: `ShearThinning.response`, None where no conductance follows the pressure;
 - ``matrix``: (order, number, lower, upper, inv_diag, slopes, relative change of links, gap or density per unit of P);
@@ -43,7 +43,9 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.assemble import dense_band
+from exudyn_ehd.compilation import I0, I1, NO
+from exudyn_ehd.film.banded.workspace import dense_band
+from exudyn_ehd.film.cavitation.closures import imbalance
 from exudyn_ehd.film.cavitation.rupture_line import line_terms
 from exudyn_ehd.film.cavitation.states import (
     OIL,
@@ -55,13 +57,11 @@ from exudyn_ehd.film.cavitation.states import (
     snap_to_bounds,
     subtract_sink,
 )
-from exudyn_ehd.film.cavitation.system import imbalance
-from exudyn_ehd.film.kernels import I0, I1, NO
 from exudyn_ehd.film.lubricant.density import density_at
 from exudyn_ehd.film.reynolds.balance import film_balance, terms_of
 from exudyn_ehd.film.reynolds.links import linear_residual
-from exudyn_ehd.film.solvers.liner.winkler import plain_residual
 from exudyn_ehd.film.solvers.matrix import factor_film, solve_step
+from exudyn_ehd.film.solvers.winkler import plain_residual
 
 MOST_STEPS = 60
 # Convergence tolerances. A chord step converges if its estimated error, over the peak pressure, is at most the first

@@ -14,9 +14,9 @@ from collections.abc import Callable
 import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
+from exudyn_ehd.film.cavitation.closures import FilmSystem, has_unfed_row
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, extend_film, mean_in_cells, solve_linear
 from exudyn_ehd.film.cavitation.states import CLIPPED, OIL, RUPTURE
-from exudyn_ehd.film.cavitation.system import FilmSystem, has_unfed_row
 from exudyn_ehd.film.lubricant.density import know_at
 from exudyn_ehd.film.reynolds.balance import store_content
 from exudyn_ehd.film.solvers.matrix import factor_film

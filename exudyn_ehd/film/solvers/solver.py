@@ -11,17 +11,16 @@ from functools import partial
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import Closure
-from exudyn_ehd.film.cavitation.system import status_of
+from exudyn_ehd.film.cavitation.closures import Closure, status_of
+from exudyn_ehd.film.cavitation.rupture_line import FilmLine
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.answers import FilmAnswers
-from exudyn_ehd.film.solvers.liner.film import LinerFilm, cold_start, failure, pseudo_transient
-from exudyn_ehd.film.solvers.liner.line import FilmLine
-from exudyn_ehd.film.solvers.liner.winkler import Liner
+from exudyn_ehd.film.solvers.liner import LinerFilm, cold_start, failure, pseudo_transient
 from exudyn_ehd.film.solvers.sets import solve_sets
+from exudyn_ehd.film.solvers.winkler import Liner
 from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.status import Status
 

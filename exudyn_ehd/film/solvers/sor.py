@@ -34,8 +34,7 @@ import numpy as np
 from numba import njit
 from scipy.sparse import coo_matrix, csr_matrix, diags_array, eye_array, kron
 
-from exudyn_ehd.film.banded.factors import factor_lu
-from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.factors import factor_lu, number_cells
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.status import POSITIVE, Checked, Status, require_count

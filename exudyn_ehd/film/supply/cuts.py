@@ -57,15 +57,19 @@ import numpy as np
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.turbulence import Hirs
 from exudyn_ehd.film.supply.areas import (
+    SHORTEST,
     AxialGroove,
+    Circle,
     CircumferentialGroove,
     Hole,
     Pocket,
     SupplyArea,
     axial_span,
+    circle,
     placed,
+    strength,
+    strengths,
 )
-from exudyn_ehd.film.supply.holes import SHORTEST, Circle, circle, strength, strengths
 from exudyn_ehd.status import ROUNDING
 
 # Number of chords for the integration over a round hole, by the rule of Gauss and Chebyshev. The area is exact with any

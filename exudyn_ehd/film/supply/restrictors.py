@@ -416,7 +416,7 @@ def add_border(
     number : (n, m) int array
         Unknown of every vertex, -1 without.
     slopes : (5, n, m) array
-        As `exudyn_ehd.film.banded.assemble.assemble` takes them.
+        As `exudyn_ehd.film.banded.workspace.assemble` takes them.
     B, C, D : (k, count), (k, count), (k, k) arrays
         B^T, C and D, changed in place.
     """

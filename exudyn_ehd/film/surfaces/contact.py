@@ -1,4 +1,4 @@
-"""Contact pressure of touching surfaces, limiters of the film's gap, and wear.
+"""Surfaces under load: contact pressure, limiters of the film's gap, wear, and elastic liners.
 
 The pressure of a contact is ``level F(h / unit)``. F is a cubic Hermite spline through equidistant knots. It decreases
 with the gap, is convex, and is zero with zero slope at its last knot. Below its first knot the first cubic continues.
@@ -17,7 +17,7 @@ For a gap h below the onset h0, with s = h / h0:
 The wall is a regularisation with one stiffness, not a model of asperities, and it has no friction. Where it acts, the
 film's gap changes less along the surface than the gap of the solids. The film's pressure on this difference of slopes
 acts along the normal of the journal and has no torque about its axis: see closed gaps in
-`exudyn_ehd.film.surfaces.patir_cheng`.
+`exudyn_ehd.film.surfaces.roughness`.
 
 Wear of the bore after Archard, which adds to the gap
 -----------------------------------------------------
@@ -34,6 +34,16 @@ Wrench of contact pressures and of their friction, and its gradient
 The wrench is linear in the integrals of the pressure times `FilmGrid.moments`: cos, sin, z cos, z sin and 1. The
 pressures do no work on the journal's spin, so that their torque about O is e x F. Friction acts at the bore's points
 against the slip, regularised as ``v / sqrt(|v|^2 + v0^2)``.
+
+Elastic liner, whose deflection at a point depends on the pressure at that point only
+-------------------------------------------------------------------------------------
+A layer of thickness t on a stiff housing, pressed by p without sliding sideways (plane strain in both directions along
+the surface), deflects by
+
+    delta = K_nu t p / E,    K_nu = (1 + nu)(1 - 2 nu) / (1 - nu),
+
+the Winkler model. It is right for layers thinner than the width of the contact, and wrong for incompressible layers.
+`exudyn_ehd.film.solvers.liner` solves the film on a liner.
 """
 
 from __future__ import annotations
@@ -47,7 +57,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, ROUNDING, Checked, require_number
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, ROUNDING, Checked, InputError, require_number
 
 # Solution for the gap on an elastic element: most Newton steps, and tolerance, which is the size of the last step over
 # the gap at which the contact begins. The slope of the pressure is that before the last step, so that a larger
@@ -164,6 +174,44 @@ class Contact:
         contact = copy.copy(self)
         contact.land = land
         return contact
+
+
+def composite_modulus(youngs_moduli: tuple[float, float], poisson_ratios: tuple[float, float]) -> float:
+    """Composite modulus E' of two bodies in contact, ``1/E' = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2``.
+
+    Parameters
+    ----------
+    youngs_moduli : (float, float)
+        E_1, E_2, Pa.
+    poisson_ratios : (float, float)
+        nu_1, nu_2, each between -1 and 0.5.
+
+    Returns
+    -------
+    float
+        E', Pa.
+
+    Raises
+    ------
+    InputError
+        For other than two bodies, moduli that are not positive, or Poisson ratios beyond -1 to 0.5.
+
+    Examples
+    --------
+    >>> round(1e-9 * ehd.composite_modulus((2.1e11, 1.1e11), (0.3, 0.34)), 1)  # GPa, steel on bronze
+    80.8
+    """
+    if not len(youngs_moduli) == len(poisson_ratios) == 2:
+        raise InputError(
+            "composite_modulus: youngs_moduli and poisson_ratios must be two numbers each, one of each body, got "
+            f"{len(youngs_moduli)} and {len(poisson_ratios)}."
+        )
+    compliance = 0.0
+    for E, nu in zip(youngs_moduli, poisson_ratios, strict=True):
+        POSITIVE("composite_modulus: youngs_moduli", E)
+        require_number("composite_modulus: poisson_ratios", nu, above=-1.0, at_most=0.5)
+        compliance += (1.0 - nu**2) / E
+    return 1.0 / compliance
 
 
 @njit(cache=True)
@@ -415,3 +463,55 @@ def contact_tangent(
     for q, by_speed in enumerate(slip(motion, R, transition)[1].T):
         out[:, 8 + q] = _traction_weights(friction * by_speed, R) @ integrals
     return out
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticLiner(Checked):
+    """Thin elastic layer on a rigid housing, which deflects where the pressure acts (Winkler elements).
+
+    Use it for soft or thick layers whose deflection reaches a tenth of the minimum film thickness; a housing that
+    bends needs a bush with a mesh. Each point deflects outward by ``compliance`` times its own pressure, in one solve
+    with the film; ``compliance`` = (1 + nu) (1 - 2 nu) / (1 - nu) t / E.
+
+    Contact pressure deflects the liner too: journals may sink into soft liners, also at their edges, by more than the
+    clearance; under `ElrodAdams` such a film can starve. Liners work with every law and effect, but not with the
+    reduced films (such as `ShortBearing`). With `BarusPressure` or `RoelandsPressure` the result is the classical
+    elastohydrodynamic film, in which high viscosity and deflection increase each other.
+
+    Parameters
+    ----------
+    thickness : float
+        Thickness t, m.
+    youngs_modulus : float
+        Young's modulus E, Pa.
+    poisson_ratio : float, default 0.3
+        Poisson's ratio nu, 0 to 0.49: incompressible layers do not deflect point by point.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> liner = ehd.ElasticLiner(thickness=0.002, youngs_modulus=3e9, poisson_ratio=0.35)
+    >>> f"{liner.compliance:.2g}"  # m/Pa
+    '4.2e-13'
+    >>> bearing = ehd.JournalBearing(**b, bush=liner)
+    """
+
+    thickness: float
+    youngs_modulus: float
+    poisson_ratio: float = 0.3
+
+    checks: ClassVar = {
+        "thickness": POSITIVE,
+        "youngs_modulus": POSITIVE,
+        "poisson_ratio": partial(
+            NOT_NEGATIVE,
+            at_most=0.49,
+            hint="a nearly incompressible liner does not deflect point by point, take a bush with a mesh.",
+        ),
+    }
+
+    @property
+    def compliance(self) -> float:
+        """Deflection per pressure K_nu t / E, m/Pa."""
+        nu = self.poisson_ratio
+        return (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu) * self.thickness / self.youngs_modulus

@@ -16,13 +16,12 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.audit import effects, switches
 from exudyn_ehd.joint.audit.case import MATTERS, Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Audit, Finding, judged
-from exudyn_ehd.joint.audit.ringing import WINDOW, watched
+from exudyn_ehd.joint.audit.resolution import WINDOW, Resolution, watched
 from exudyn_ehd.joint.audit.samples import RecordedSteps, recorded_states, squeeze_rate
-from exudyn_ehd.joint.balance.resolution import Resolution
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.step_error import enough_steps
 

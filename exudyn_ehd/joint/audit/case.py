@@ -19,8 +19,9 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.film.thrust.annulus import ThrustFaces
+from exudyn_ehd.joint.audit.resolution import Resolution, resolution
 from exudyn_ehd.joint.audit.samples import (
     FilmState,
     RecordedSteps,
@@ -34,7 +35,6 @@ from exudyn_ehd.joint.audit.samples import (
 )
 from exudyn_ehd.joint.audit.switches import Switch, two_dimensional
 from exudyn_ehd.joint.balance.newton import FREE_STEP, ROOM, evaluate_at
-from exudyn_ehd.joint.balance.resolution import Resolution, resolution
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation

@@ -9,10 +9,9 @@ from typing import NamedTuple
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.audit.case import MATTERS, NOTHING, Case, Change
-from exudyn_ehd.joint.audit.ringing import LIMIT
+from exudyn_ehd.joint.audit.resolution import FEWEST, LIMIT, STEEPEST
 from exudyn_ehd.joint.audit.switches import Switch, turbulent, two_dimensional
 from exudyn_ehd.joint.balance.limits import HOT
-from exudyn_ehd.joint.balance.resolution import FEWEST, STEEPEST
 from exudyn_ehd.status import InputError
 from exudyn_ehd.tables import html_table
 
@@ -86,13 +85,13 @@ LIMITS = {
     "turbulence": Limit(2000.0, "rho U c / mu of a Couette flow", nothing=200.0),
     # up to twice the forces of lubrication theory were measured at 10: ASME GT1984, V005T13A003
     "fluid inertia": Limit(1.0, "rho w c^2 / mu: inertia takes a tenth of the viscous pressure of a swinging flow"),
-    "grid around": Limit(FEWEST, "intervals: 5 % of the peak pressure, `joint.balance.resolution`", below=True),
+    "grid around": Limit(FEWEST, "intervals: 5 % of the peak pressure, `joint.audit.resolution`", below=True),
     "grid along": Limit(STEEPEST, "times as thick a film: as around"),
     "supply resolution": Limit(
         1.0, "interval across the narrowest area, whose edges act where they are", below=True, nothing=math.inf
     ),
     "time step": Limit(0.05, "of the minimum film thickness"),
-    "ringing": Limit(LIMIT - 1.0, "bursts of `exudyn_ehd.joint.audit.ringing`, which warns from four on"),
+    "ringing": Limit(LIMIT - 1.0, "bursts of `exudyn_ehd.joint.audit.resolution`, which warns from four on"),
 }
 
 

@@ -15,13 +15,12 @@ import scipy
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import ElrodAdams, SwiftStieber
 from exudyn_ehd.film.heat.options import Conduction, FilmEnergy, LumpedThermal, known_supply
+from exudyn_ehd.film.lubricant.lubricant import ReynoldsTemperature
 from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
-from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.reynolds.turbulence import NgPan
-from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
-from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
+from exudyn_ehd.film.surfaces.roughness import GreenwoodTripp, PatirCheng
 from exudyn_ehd.joint.balance.limits import is_fed
 
 # Typical oils: pressure law and temperature coefficient, 1/K, of a mineral oil (ISO VG 46 near 70 degrees Celsius);
@@ -77,7 +76,7 @@ def _pin(tolerance: float, bearing: JournalBearing) -> JournalBearing:
     With a ``tolerance`` of 0.08 the error of the peak pressure is 1 to 3 % where the change is large.
     """
     # imported here: a rigid bearing needs no solid
-    from exudyn_ehd.solid.journal.modes import ElasticJournal
+    from exudyn_ehd.solid.journal import ElasticJournal
     from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 
     half, steel = 0.5 * bearing.length, SaintVenantKirchhoff(**STEEL)

@@ -11,7 +11,7 @@ from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.options import Walls
 from exudyn_ehd.film.supply.restrictors import Reservoirs
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import SolvedFilm

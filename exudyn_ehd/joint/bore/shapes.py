@@ -40,9 +40,9 @@ from scipy.sparse import csr_matrix, diags, diags_array, kron, vstack
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.solid.bush import BoreModes
 from exudyn_ehd.solid.fe_bore import ReducedBore
-from exudyn_ehd.solid.journal.harmonics import POINTS, WEIGHTS
-from exudyn_ehd.solid.journal.modes import JournalModes
-from exudyn_ehd.solid.unrolled import Surface, directed
+from exudyn_ehd.solid.harmonics import POINTS, WEIGHTS
+from exudyn_ehd.solid.journal import JournalModes
+from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.status import ROUNDING, SMALL
 
 # Number of vertices of an interpolation. Gauss points of a panel are exact for cubics times quadratic shape functions.

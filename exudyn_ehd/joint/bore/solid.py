@@ -27,8 +27,7 @@ from exudyn_ehd.joint.bore.equilibrium import (
     NodalEvaluation,
 )
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
-from exudyn_ehd.solid.linear import sparse_factor
-from exudyn_ehd.solid.total_lagrange import TotalLagrange
+from exudyn_ehd.solid.total_lagrange import TotalLagrange, sparse_factor
 from exudyn_ehd.status import Status
 
 # Residual over the film's forces that counts as balanced if it does not fall further because of round-off.

@@ -1,35 +1,261 @@
-"""Two temperatures across the film, `FilmEnergy.across` = 2: state, viscosity and heat balance of a bearing model.
+"""Temperature across the film as a cubic with two unknowns, `FilmEnergy.across` = 2: viscosity and heat balance.
 
-A state has four blocks (n, m) in place of the film's one temperature, K: the mean, the mean with the tilt, and the
-surfaces of bush and journal; see `exudyn_ehd.film.heat.across`. The columns of conducting walls follow, as in
+Over the height zeta, 0 at the bush and 1 at the journal, with Legendre's polynomials P_k on it,
+
+    T = s + a P_1 + ((T_j + T_b)/2 - s) P_2 + ((T_j - T_b)/2 - a) P_3,
+
+with the mean s, the tilt a, and the temperatures T_b and T_j of the surfaces. T_b and T_j follow from the heat flow
+through the surfaces, ``q_b = k/h (6 s - 10 a - 9 T_b + 3 T_j)`` and ``q_j = k/h (6 s + 10 a - 9 T_j + 3 T_b)``. The
+fluidity 1/mu is the cubic through its values at Lobatto's four points, which are the surfaces and 1/2 -+ 1/(2 sqrt 5)
+(H. G. Elrod and D. E. Brewe, Proc. 13th Leeds-Lyon Symposium (1986) 493). Lobatto's rule gives its moments
+``J_r = int zeta^r / mu`` exactly. With them the flow and the shear stress are (D. Dowson, Int. J. Mech. Sci. 4 (1962)
+159)
+
+    q = U h (1 - J_1/J_0) - h^3 (J_2 - J_1^2/J_0) dp/dx,        tau = U / (h J_0) + h (zeta - J_1/J_0) dp/dx.
+
+There are two energy equations for a control volume: the mean over the height, and the one weighted with P_1. On a link
+the flow at every height transports the temperature upstream at that height; in z this is of second order, as in
+`exudyn_ehd.film.heat.energy`. Oil also flows across the film, as continuity demands. Oil that leaves at the ends has
+the profile of pressure flow. Oil that a cavitation model adds or loses has the profile of Couette flow.
+
+Scaled as in `exudyn_ehd.film.heat.energy`. Quantities that are linear in the temperatures have a last axis of four
+coefficients: of s, of a, and of the temperatures w_b and w_j outside the surfaces. An axis of two holds the heat and
+its tilt, which is the heat weighted with P_1. Fluidities (n, m, 4) are divided by the reference fluidity, and are those
+at Lobatto's points.
+
+A state of a bearing's model has four blocks (n, m) in place of the film's one temperature, K: the mean, the mean with
+the tilt, and the surfaces of bush and journal. The columns of conducting walls follow, as in
 `exudyn_ehd.joint.heat.walls`.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
+import scipy
+from numba import njit
+from numpy.polynomial import Polynomial
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.heat.across import (
-    HEIGHTS,
-    FluidityField,
-    at_heights,
+from exudyn_ehd.compilation import FAST
+from exudyn_ehd.film.heat.energy import (
+    LOBATTO,
+    ViscosityField,
     at_points,
-    band_of_pairs,
-    carry,
-    crossed_tilt,
-    flow_shapes,
-    heat_tilts,
-    start_heights,
-    surfaces,
-    weighed,
+    cubic_at,
+    downstream_weight,
+    film_heat,
+    passed,
 )
-from exudyn_ehd.film.heat.energy import ViscosityField, film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy
+from exudyn_ehd.film.reynolds.links import LinkFlux, drops, to_ends
 from exudyn_ehd.joint.heat.power import conductances_of, dropped, sheared
 from exudyn_ehd.joint.heat.temperature import MIXED, STAGNANT, HeatBalance, linear
 from exudyn_ehd.joint.heat.walls import FilmTemperature
 from exudyn_ehd.joint.solved_film import SolvedFilm
+
+_MOMENTS = (np.array([1.0, 5.0, 5.0, 1.0]) / 12.0)[:, None] * LOBATTO[:, None] ** np.arange(3)
+# five heights: Gauss's rule is then exact for the product of a flow (degree 5), a temperature (3) and a weight (1)
+HEIGHTS, _SHARES = scipy.special.roots_sh_legendre(5)
+_WEIGHTS = np.array([_SHARES, _SHARES * (2.0 * HEIGHTS - 1.0)])
+
+
+def _of_points(moment: int, times: int) -> np.ndarray:
+    """zeta^moment times Lagrange's polynomial of each point, integrated ``times`` times from the bush: (4, 5)."""
+    polynomials = (Polynomial.fromroots(np.delete(LOBATTO, k)) for k in range(4))
+    weighted = (p * Polynomial.basis(moment) / p(at) for p, at in zip(polynomials, LOBATTO, strict=True))
+    return np.array([p.integ(times)(HEIGHTS) for p in weighted])
+
+
+_FLUID, _FLOWS = _of_points(0, 0), [_of_points(r, k) for k in (1, 2) for r in (0, 1)]
+_CUBIC = cubic_at(HEIGHTS)
+
+
+def on_links(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Fluidities of the links in theta and z, by the mean viscosity of both vertices at each point."""
+    thick = 1.0 / fluid
+    far = np.concatenate((thick[:, 1:], thick[:, -1:]), axis=1)
+    return 2.0 / (thick + np.roll(thick, -1, axis=0)), 2.0 / (thick + far)
+
+
+def flow_factors(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Factors (n, m) of conductance, carrier and shear stress for the fluidities (n, m, 4) at Lobatto's points."""
+    J0, J1, J2 = np.moveaxis(fluid @ _MOMENTS, -1, 0)
+    return 12.0 * (J2 - J1 * J1 / J0), 2.0 * (1.0 - J1 / J0), 1.0 / J0
+
+
+class FluidityField(ViscosityField):
+    """Viscosity over the height of a film: flux effect and shear factor.
+
+    Attributes
+    ----------
+    vertices, along, across : (n, m, 4) arrays
+        1 over the viscosity ratio at Lobatto's points: at the vertices, on links in theta, and on links in z.
+    """
+
+    changes_carriers = True
+
+    def set(self, ratio: np.ndarray) -> None:
+        """Set the viscosity ratio at Lobatto's points of the vertices (n, m, 4); a link has its vertices' mean."""
+        self.vertices = 1.0 / ratio
+        self.along, self.across = on_links(self.vertices)
+        self.inverse_x, self.carried_x, _ = flow_factors(self.along)
+        self.inverse_z, self.carried_z, _ = flow_factors(self.across)
+        self.ratio = flow_factors(self.vertices)[2]
+
+    def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
+        """Multiply conductances and carriers by their factors on the links."""
+        super().apply(flux, gap_x, gap_z, vx, vz)
+        for carriers, factor in (((flux.cx, flux.cx_h), self.carried_x), ((flux.cz, flux.cz_h), self.carried_z)):
+            for carrier in carriers:
+                carrier *= factor
+
+
+class Shapes(NamedTuple):
+    """Flows of sliding and of pressure at the heights and below them, over the mean flow; (n, m, 5) each."""
+
+    slides: np.ndarray
+    pressed: np.ndarray
+    slides_below: np.ndarray
+    pressed_below: np.ndarray
+
+
+def flow_shapes(fluid: np.ndarray) -> Shapes:
+    """Shapes of the flows for the fluidities (n, m, 4)."""
+    J0, J1, J2 = np.moveaxis(fluid @ _MOMENTS, -1, 0)[..., None]
+    F0, F1, B0, B1 = ((fluid.reshape(-1, 4) @ of).reshape(*fluid.shape[:2], 5) for of in _FLOWS)
+    centre = J1 / J0
+    slide, press = 1.0 / (J0 - J1), 1.0 / (J2 - J1 * centre)
+    return Shapes(slide * F0, press * (centre * F0 - F1), slide * B0, press * (centre * B0 - B1))
+
+
+def heat_tilts(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Tilt of the heat, (n, m) each: of sliding and of pressure flow over their heat, and of their mixed product."""
+    J0, J1, _ = np.moveaxis(fluid @ _MOMENTS, -1, 0)
+    heat, tilt = ((fluid @ _FLUID) * w for w in _WEIGHTS)
+    arm = HEIGHTS - (J1 / J0)[..., None]
+    return tilt.sum(-1) / J0, (tilt * arm**2).sum(-1) / (heat * arm**2).sum(-1), (tilt * arm).sum(-1) / J0
+
+
+def crossed_tilt(
+    P: np.ndarray, H: np.ndarray, both: np.ndarray, speeds: tuple[float, float], mesh: tuple[np.ndarray, ...]
+) -> np.ndarray:
+    """Tilt of the heat (n, m) from the mixed product of the stresses of sliding and of pressure flow.
+
+    ``both``: last array of `heat_tilts`; ``speeds``: scaled, along theta and z.
+    """
+    width_x, width_z, link_x, _ = mesh
+    x, z = -drops(P)
+    along, across = speeds[0] * np.outer(link_x != 0.0, width_z) * x, speeds[1] * width_x[:, None] * z
+    return 4.0 * H * both * (to_ends(along, 0) + to_ends(across, 1))
+
+
+def surfaces(
+    kappa: np.ndarray, area: np.ndarray, outward: tuple[float | None, float | None]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Temperatures of both surfaces, heat into them, W, and the losses of heat and tilt by conduction, W.
+
+    Arguments as for `exudyn_ehd.film.heat.energy.passed`; (2, n, m, 4) each.
+    """
+    inside = np.array([[6.0, -10.0, 0.0, 0.0], [6.0, 10.0, 0.0, 0.0]])
+    T, through = (np.ascontiguousarray(np.moveaxis(x, 1, -1)) for x in passed(kappa, area, outward, inside, 9.0, -3.0))
+    tilt = (kappa * area)[..., None] * (np.array([0.0, 20.0, 0.0, 0.0]) - 10.0 * (T[1] - T[0]))
+    return T, through, np.stack((through[0] + through[1], tilt))
+
+
+def at_heights(surface: np.ndarray) -> np.ndarray:
+    """Temperatures (n, m, 5, 4) at the heights, from those of both surfaces (2, n, m, 4)."""
+    out = np.einsum("gk,kijc->ijgc", _CUBIC[:, 2:], surface)
+    out[..., :2] += _CUBIC[:, :2]
+    return out
+
+
+def weighed(flow: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Heat and tilt (2, n, m, 4) of flows at the heights (n, m, 5) with temperatures ``at`` of `at_heights`."""
+    return np.asarray(np.einsum("rijg,ijgc->rijc", _WEIGHTS[:, None, None] * flow, at))
+
+
+def start_heights(fields: np.ndarray) -> np.ndarray:
+    """Temperatures (n, 5, m) at the heights, from mean, tilt and both surfaces (4, n, m)."""
+    return np.ascontiguousarray(np.einsum("gc,cij->igj", _CUBIC, fields))
+
+
+@njit(cache=True, fastmath=FAST)
+def carry(axis, driven, sliding, shapes, at, limiter, ends_out, below_out, content_out):
+    """Add the heat, its tilt and the oil that flow over the links in theta (axis 0) or z (1).
+
+    Parameters
+    ----------
+    driven, sliding : (n, m) arrays
+        Flows by pressure and by sliding.
+    shapes : Shapes
+        Of the flows on the links.
+    at : (n, m, 5, 4) array
+        See `at_heights`.
+    limiter : three arrays
+        `start_heights`, and ``link_z`` and ``held`` as in `exudyn_ehd.film.heat.energy.transport_slopes`. Here the
+        limiter of that function acts at every height.
+    ends_out : (2, 2, n, m, 4) array
+        Coefficients of the heat and tilt that leave over the link: of the temperatures at its first vertex, and at its
+        second one.
+    below_out, content_out : (n, m, 5), (n, m) arrays
+        Inflow of oil into a vertex below the heights, and over the whole height.
+    """
+    slides, pressed, slides_below, pressed_below = shapes
+    T, link_z, held = limiter
+    n, m, heights = slides.shape
+    for i in range(n):
+        for j in range(m - axis):
+            a, b = ((i + 1) % n, j) if axis == 0 else (i, j + 1)
+            p, s = driven[i, j], sliding[i, j]
+            content_out[i, j] -= p + s
+            content_out[a, b] += p + s
+            for g in range(heights):
+                passed = s * slides_below[i, j, g] + p * pressed_below[i, j, g]
+                below_out[i, j, g] -= passed
+                below_out[a, b, g] += passed
+                F, share = s * slides[i, j, g] + p * pressed[i, j, g], 0.0
+                if axis == 1 and F != 0.0:
+                    store = held[i, j + 1 if F < 0.0 else j]
+                    share = downstream_weight(T[i, g], link_z, j, F) * min(1.0, store / abs(F))
+                own = (1.0 - share if F > 0.0 else share) * F
+                for r in range(2):
+                    for c in range(4):
+                        ends_out[0, r, i, j, c] += _WEIGHTS[r, g] * own * at[i, j, g, c]
+                        ends_out[1, r, i, j, c] += _WEIGHTS[r, g] * (F - own) * at[a, b, g, c]
+
+
+@njit(cache=True)
+def band_of_pairs(ends, own, number, lower, upper):
+    """Fill the bands, as in `exudyn_ehd.film.banded.factors`, for the pairs (s, a) at the numbered vertices (n, m).
+
+    ``own`` (2, n, m, 4): coefficients of a vertex without its links; ``ends`` (2, 2, 2, n, m, 4): ``ends_out`` of
+    `carry` for the links in theta and in z.
+    """
+    n, m = number.shape
+    lower[:] = 0.0
+    upper[:] = 0.0
+    for i in range(n):
+        for j in range(m):
+            here = number[i, j]
+            _add(own[:, i, j], 1.0, here, here, lower, upper)
+            for axis in range(2 if j + 1 < m else 1):
+                there = number[(i + 1) % n, j] if axis == 0 else number[i, j + 1]
+                for side, column in ((0, here), (1, there)):
+                    _add(ends[axis, side, :, i, j], 1.0, here, column, lower, upper)
+                    _add(ends[axis, side, :, i, j], -1.0, there, column, lower, upper)
+
+
+@njit(cache=True, inline="always")
+def _add(block, sign, row, column, lower, upper):
+    for r in range(2):
+        for c in range(2):
+            a, b = 2 * row + r, 2 * column + c
+            if b >= a:
+                upper[a, b - a] += sign * block[r, c]
+            else:
+                lower[b, a - b] += sign * block[r, c]
 
 
 class PairBalance(HeatBalance):

@@ -14,11 +14,9 @@ from typing import Any
 import numpy as np
 
 from exudyn_ehd.film.arcs import rows_at_sides
-from exudyn_ehd.film.banded.assemble import assemble
-from exudyn_ehd.film.banded.factors import factor_lu
-from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.factors import factor_lu, number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu
-from exudyn_ehd.film.banded.workspace import PAD
+from exudyn_ehd.film.banded.workspace import PAD, assemble
 from exudyn_ehd.film.heat.energy import ViscosityField, through_surfaces, transport_slopes
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal, Sump, Walls, known_supply
 from exudyn_ehd.film.lubricant.lubricant import Lubricant

@@ -22,7 +22,7 @@ from exudyn_ehd.film.heat.options import Conduction, FilmEnergy, Rings, Walls
 from exudyn_ehd.joint.heat.power import OilFlows, heat_of
 from exudyn_ehd.joint.heat.temperature import BandSolver, HeatBalance, OilTemperature, PassageData
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
-from exudyn_ehd.solid.linear import solve_by_products
+from exudyn_ehd.solid.total_lagrange import solve_by_products
 from exudyn_ehd.status import ROUNDING
 
 # Tolerance of the heat flow between film and walls, relative. Larger: fewer iterations of GMRES.

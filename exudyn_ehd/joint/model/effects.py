@@ -22,14 +22,12 @@ from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.models import film_grid, film_solver
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkLaw, ShearFactor, ShearProduct
-from exudyn_ehd.film.solvers.liner.winkler import Liner
+from exudyn_ehd.film.solvers.winkler import Liner
 from exudyn_ehd.film.supply.cuts import SupplyMap
 from exudyn_ehd.film.supply.restrictors import Reservoirs
-from exudyn_ehd.film.surfaces.asperity import AsperityContact, AverageGap
-from exudyn_ehd.film.surfaces.contact import ArchardWear, Contact, GapLimiter, WallContact
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.film.surfaces.patir_cheng import RoughFlow
+from exudyn_ehd.film.surfaces.contact import ArchardWear, Contact, ElasticLiner, GapLimiter, WallContact
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
+from exudyn_ehd.film.surfaces.roughness import AsperityContact, AverageGap, RoughFlow
 from exudyn_ehd.joint.heat.temperature import LumpedTemperature, OilTemperature
 from exudyn_ehd.joint.solved_film import ContactFields, FilmParts, History, LimiterFields, SolvedFilm
 
@@ -70,7 +68,7 @@ class Effects:
         Shape of arcs; also one of ``gap_terms``.
     uneven_drag : bool
         True if a pressure gradient exerts different shear forces on both surfaces; see
-        `exudyn_ehd.film.surfaces.patir_cheng`.
+        `exudyn_ehd.film.surfaces.roughness`.
     """
 
     gap_terms: tuple[GapTerm, ...] = ()
@@ -288,8 +286,7 @@ def _rheology(
 
     kind, field = FilmTemperature, ViscosityField()
     if spec.across == 2:
-        from exudyn_ehd.film.heat.across import FluidityField
-        from exudyn_ehd.joint.heat.across import CubicTemperature
+        from exudyn_ehd.joint.heat.across import CubicTemperature, FluidityField
 
         kind, field = CubicTemperature, FluidityField()
     for law in laws:

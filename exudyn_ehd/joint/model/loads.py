@@ -11,7 +11,7 @@ from exudyn_ehd.film.reynolds.links import on_links
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.supply.cuts import RecessShear, recess_shear
-from exudyn_ehd.film.surfaces import patir_cheng
+from exudyn_ehd.film.surfaces import roughness
 from exudyn_ehd.film.surfaces.contact import add_contact
 from exudyn_ehd.joint.heat.temperature import OilTemperature
 from exudyn_ehd.joint.solved_film import (
@@ -99,7 +99,7 @@ def drag_weights(parts: FilmParts, limited: LimiterFields | None) -> np.ndarray:
     carriers = (s.HF, on_links(s.H)[1])
     if parts.uneven_drag and s.flux is not None:
         carriers = s.flux.cx, s.flux.cz
-    return patir_cheng.drag_weights(carriers, gap, link, parts.grid.link_widths)
+    return roughness.drag_weights(carriers, gap, link, parts.grid.link_widths)
 
 
 def edge_forces(parts: FilmParts, scales: Scales) -> float:

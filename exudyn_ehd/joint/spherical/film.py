@@ -33,7 +33,7 @@ The wrench is F = F_p + F_c and the moment about O, T_c + T_p + e x F; minus thi
 With the same N in loads and sources, work and heat agree: -(F v + T w) = sum H^3 (dP)^2 + Couette's heat >= 0.
 
 If a wall limits the film's gap to H(g), with the true gap g, sources and T_p contain the factor dH/dg (closed gaps in
-`exudyn_ehd.film.surfaces.patir_cheng`). The share 1 - dH/dg of the pressure acts from solid to solid, without torque.
+`exudyn_ehd.film.surfaces.roughness`). The share 1 - dH/dg of the pressure acts from solid to solid, without torque.
 
 With a pressure law the solver's unknown is q, dq = dp mu_0 / mu(p) (`exudyn_ehd.film.lubricant.pressure_viscosity`).
 Loads are computed from p(q) and the viscosity of every vertex; heat is sum H^3 dq dP. With a density law q is that of
@@ -66,7 +66,7 @@ from exudyn_ehd.status import Status
 PLACE, VELOCITY, SPIN = slice(0, 3), slice(4, 7), slice(8, 11)
 SIZE = SPIN.stop
 """Motion: place (m), 0, velocity (m/s), 0, angular velocity (rad/s). The zeros are there because
-`exudyn_ehd.joint.step_rates` expects four places and four rates."""
+`exudyn_ehd.joint.time_step` expects four places and four rates."""
 # Matrices that select the place (3,), and velocity and angular velocity (6,), of a motion.
 PLACES, SPEEDS = np.eye(SIZE)[PLACE], np.eye(SIZE)[np.r_[VELOCITY, SPIN]]
 

@@ -26,6 +26,7 @@ from exudyn_ehd.joint.audit import effects
 from exudyn_ehd.joint.audit.audit import ROWS, AuditRow, audit_of
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Audit, Finding, Limit, judged
+from exudyn_ehd.joint.audit.resolution import Resolution, intervals_at_half
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, Sources, squeeze_share
 from exudyn_ehd.joint.audit.switches import ROUGH_STEEL, STEEL, VAPOUR_PRESSURE
 from exudyn_ehd.joint.balance.limits import (
@@ -36,7 +37,6 @@ from exudyn_ehd.joint.balance.limits import (
     warn_of_heat,
     warn_of_overload,
 )
-from exudyn_ehd.joint.balance.resolution import Resolution, intervals_at_half
 from exudyn_ehd.joint.solved_film import LARGEST_SPREAD
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY

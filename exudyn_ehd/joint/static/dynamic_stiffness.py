@@ -34,8 +34,8 @@ from scipy.linalg import block_diag
 from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.film.gradients import Gradients
-from exudyn_ehd.film.solvers.liner.film import LinerFilm
+from exudyn_ehd.film.reynolds.gap import Gradients
+from exudyn_ehd.film.solvers.liner import LinerFilm
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation

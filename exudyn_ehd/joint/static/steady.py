@@ -11,10 +11,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.audit.audit import audit_of
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import Audit
+from exudyn_ehd.joint.audit.resolution import warn_of_grid
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.balance.limits import (
     lacks_oil,
@@ -24,7 +25,6 @@ from exudyn_ehd.joint.balance.limits import (
     warn_of_starved,
 )
 from exudyn_ehd.joint.balance.newton import evaluate_at, history_at
-from exudyn_ehd.joint.balance.resolution import warn_of_grid
 from exudyn_ehd.joint.model import results
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import BearingModel

@@ -23,8 +23,8 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags, eye_array
 
 from exudyn_ehd.film.banded.substitution import TILE, product
-from exudyn_ehd.film.gradients import Gradients
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.reynolds.gap import Gradients
 from exudyn_ehd.film.solvers.film import ends_of_cavities
 from exudyn_ehd.joint.bore.shapes import NodalBore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm

@@ -9,14 +9,14 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.assemble import dense_band
+from exudyn_ehd.compilation import YES
 from exudyn_ehd.film.banded.substitution import solve_ldl
+from exudyn_ehd.film.banded.workspace import dense_band
 from exudyn_ehd.film.cavitation.linear_film import column_gradients, couple_columns, rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import line_gradients, weigh_line
-from exudyn_ehd.film.gradients import add_columns, functional_gradients, link_rows
-from exudyn_ehd.film.kernels import YES
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, wrench_gradient
-from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
+from exudyn_ehd.film.reynolds.balance import link_derivatives
+from exudyn_ehd.film.reynolds.gap import add_columns, functional_gradients, link_rows
 from exudyn_ehd.film.solvers.matrix import factor_symmetric
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.plain_film import has_plain_edges, has_plain_supply

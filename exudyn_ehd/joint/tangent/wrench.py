@@ -7,7 +7,7 @@ pressure. Gap terms and uneven drag together add two integrals, a contact on a l
 
 The true gap is that of the surfaces. If a limiter acts, the film's gap differs from it. If they differ, or if the
 surfaces' roughnesses differ, a pressure gradient exerts different drag on both surfaces, see
-`exudyn_ehd.film.surfaces.patir_cheng`.
+`exudyn_ehd.film.surfaces.roughness`.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
-from exudyn_ehd.film.gradients import Gradients, functional_gradients, join
 from exudyn_ehd.film.loads import couette_gradient, integral_weights, load_adjoint_rhs, wrench_gradient
+from exudyn_ehd.film.reynolds.gap import Gradients, functional_gradients, join
 from exudyn_ehd.film.reynolds.links import to_ends
 from exudyn_ehd.film.solvers.film import at_beside_ends, shear_by_unknown
-from exudyn_ehd.film.solvers.liner.film import LinerFilm
+from exudyn_ehd.film.solvers.liner import LinerFilm
 from exudyn_ehd.film.solvers.sor import ClassicSolver
-from exudyn_ehd.film.surfaces import patir_cheng
+from exudyn_ehd.film.surfaces import roughness
 from exudyn_ehd.film.surfaces.contact import contact_tangent, contact_weights
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
@@ -315,7 +315,7 @@ def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
     if liner is not None:
         slope, face_slope = liner.gap_slopes.rate_t, liner.gap_slopes.link
     carriers = (ones, ones) if flux is None else (flux.cx_h, flux.cz_h)
-    return patir_cheng.drag_by_gap(film.oil.P, carriers, slope, face_slope, film.grid.link_widths)
+    return roughness.drag_by_gap(film.oil.P, carriers, slope, face_slope, film.grid.link_widths)
 
 
 def true_gradients(film: SolvedFilm) -> Gradients:

@@ -11,7 +11,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.element.failures import HIGHEST_MEAN, Failures
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, make_row
-from exudyn_ehd.joint.audit.ringing import RingingWatch
+from exudyn_ehd.joint.audit.resolution import RingingWatch
 from exudyn_ehd.joint.balance.limits import HIGHEST_PEAK, HOT, HOTTEST
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.solved_film import History

@@ -7,8 +7,7 @@ import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
-from exudyn_ehd.film.banded.factors import assemble_band
-from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.factors import assemble_band, number_cells
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.linear_film import solve_linear
 

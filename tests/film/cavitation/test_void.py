@@ -7,7 +7,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.step_rates import next_start
+from exudyn_ehd.joint.time_step import next_start
 
 C, R, OMEGA = 20e-6, 0.01, 300.0
 TURN = 2.0 * math.pi / OMEGA

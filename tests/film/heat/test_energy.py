@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.banded.assemble import assemble
-from exudyn_ehd.film.banded.numbering import number_cells
-from exudyn_ehd.film.banded.workspace import PAD
+from exudyn_ehd.film.banded.factors import number_cells
+from exudyn_ehd.film.banded.workspace import PAD, assemble
 from exudyn_ehd.film.heat.energy import content_rate, film_flows, film_heat, outside_flows, transport_slopes
 
 SHAPE = (8, 5)

@@ -10,8 +10,7 @@ import pytest
 from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.lubricant.lubricant import ISO_GRADES, MULTIGRADES, SAE_GRADES
-from exudyn_ehd.film.lubricant.temperature_viscosity import TABLE_UNIT
+from exudyn_ehd.film.lubricant.lubricant import ISO_GRADES, MULTIGRADES, SAE_GRADES, TABLE_UNIT
 
 
 def table_of(oil, low, high, step):

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.gradients import Gradients, link_rows
 from exudyn_ehd.film.reynolds import links as reynolds
-from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
+from exudyn_ehd.film.reynolds.balance import link_derivatives
+from exudyn_ehd.film.reynolds.gap import Gradients, link_rows
 
 CASES = [(1, False, 1.0), (2, True, 1.0), (3, False, 0.0)]
 

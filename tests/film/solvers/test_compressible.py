@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.banded.assemble import assemble
-from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.factors import number_cells
+from exudyn_ehd.film.banded.workspace import assemble
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, film_slopes
 from exudyn_ehd.film.solvers.solver import FilmSolver

@@ -6,8 +6,8 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
-from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.solvers.solver import FilmSolver
+from exudyn_ehd.film.solvers.winkler import Liner
 
 # kernels of both effects together take longer to compile than these tests to run
 pytestmark = pytest.mark.slow

@@ -10,8 +10,8 @@ from scipy.optimize import brentq, root
 from scipy.special import ndtr
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble
-from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
+from exudyn_ehd.film.banded.factors import number_cells, number_with_corners
+from exudyn_ehd.film.banded.workspace import add_corners, add_tangents, assemble
 from exudyn_ehd.film.cavitation.states import OIL
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.heat.energy import ViscosityField
@@ -19,12 +19,17 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_profile import EXACT, fluidity_table, gauss_points, profile
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import film_slopes
-from exudyn_ehd.film.solvers.liner.elements import Rates, add_gap_slopes
-from exudyn_ehd.film.solvers.liner.winkler import Liner
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.film.surfaces.asperity import AsperityContact, greenwood_tripp_integral
+from exudyn_ehd.film.solvers.winkler import Liner
+from exudyn_ehd.film.solvers.winkler_kernels import Rates, add_gap_slopes
 from exudyn_ehd.film.surfaces.contact import WallContact
-from exudyn_ehd.film.surfaces.patir_cheng import RoughFlow, pressure_flow_factor, shear_flow_factor
+from exudyn_ehd.film.surfaces.roughness import (
+    AsperityContact,
+    RoughFlow,
+    greenwood_tripp_integral,
+    pressure_flow_factor,
+    shear_flow_factor,
+)
 from tests.sampling import sample
 
 GRID = bearing_grid(0.02, 0.03, 32, 6)

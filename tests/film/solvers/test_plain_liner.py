@@ -5,9 +5,9 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid
-from exudyn_ehd.film.solvers.liner.film import failure
-from exudyn_ehd.film.solvers.liner.winkler import Liner
+from exudyn_ehd.film.solvers.liner import failure
 from exudyn_ehd.film.solvers.solver import FilmSolver
+from exudyn_ehd.film.solvers.winkler import Liner
 
 GRID = bearing_grid(0.02, 0.03, 32, 6)
 CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber()]

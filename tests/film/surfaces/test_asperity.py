@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.stats import norm
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.surfaces.asperity import AsperityContact, AverageGap, greenwood_tripp_integral
+from exudyn_ehd.film.surfaces.roughness import AsperityContact, AverageGap, greenwood_tripp_integral
 
 CLEARANCE = 20e-6
 SIGMA = 0.5e-6

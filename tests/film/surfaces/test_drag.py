@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.film.reynolds.links import on_links
-from exudyn_ehd.film.surfaces.patir_cheng import drag_by_gap, drag_weights
+from exudyn_ehd.film.surfaces.roughness import drag_by_gap, drag_weights
 
 
 @pytest.fixture(params=[(24, 7, 1), (9, 4, 2), (5, 2, 3)])

@@ -14,11 +14,11 @@ from scipy.stats import norm
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.reynolds.links import link_flux
-from exudyn_ehd.film.surfaces.asperity import average_gap_ratio
-from exudyn_ehd.film.surfaces.patir_cheng import (
+from exudyn_ehd.film.surfaces.roughness import (
     PATTERNS,
     SHEAR_CUTOFF,
     RoughFlow,
+    average_gap_ratio,
     mean_inverse_gap,
     pressure_flow_factor,
     shear_flow_factor,

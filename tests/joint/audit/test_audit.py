@@ -13,9 +13,9 @@ import exudyn_ehd as ehd
 from exudyn_ehd.joint.audit.audit import audit_record
 from exudyn_ehd.joint.audit.case import Case, Change
 from exudyn_ehd.joint.audit.findings import LIMITS
+from exudyn_ehd.joint.audit.resolution import intervals_at_half
 from exudyn_ehd.joint.audit.samples import RecordedSteps, sources, squeeze_rate, squeeze_share, tilt_loss, worst_steps
 from exudyn_ehd.joint.audit.switches import steel_ring
-from exudyn_ehd.joint.balance.resolution import intervals_at_half
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.solved_film import History
 from tests.sampling import but_slow, sample

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.joint.audit.ringing import LIMIT, watched
+from exudyn_ehd.joint.audit.resolution import LIMIT, watched
 
 AREA = 8e-4
 

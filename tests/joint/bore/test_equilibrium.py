@@ -11,8 +11,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.joint.balance.newton import evaluate_at
 from exudyn_ehd.joint.bore.equilibrium import Newton
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.solid.elements.kinds import boundary_faces
-from exudyn_ehd.solid.mesh import BushMesh, surface_of
+from exudyn_ehd.solid.mesh import BushMesh, boundary_faces, surface_of
 
 R, L, C = 0.025, 0.025, 25e-6
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)

@@ -15,7 +15,7 @@ from exudyn_ehd.joint.bore.equilibrium import Elasticity
 from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
-from exudyn_ehd.solid.journal.modes import journal_modes
+from exudyn_ehd.solid.journal import journal_modes
 from exudyn_ehd.status import Status
 from tests.sampling import but_slow, sample
 
@@ -191,9 +191,8 @@ def test_modes_of_an_ideal_film_grid_have_the_loads_of_the_pressure():
 @pytest.mark.slow
 def test_against_a_coupled_solution_on_hexahedra():
     """A hollow pin in two bosses: compliance of a mesh on the film's vertices, coupled by a damped fixed point."""
-    from exudyn_ehd.solid.linear import sparse_factor
     from exudyn_ehd.solid.mesh import HollowCylinder
-    from exudyn_ehd.solid.total_lagrange import TotalLagrange
+    from exudyn_ehd.solid.total_lagrange import TotalLagrange, sparse_factor
 
     radius, length, c = 0.01, 0.02, 12e-6
     mesh = HollowCylinder(
@@ -235,7 +234,8 @@ def test_against_a_coupled_solution_on_hexahedra():
     e = build_model(bearing).evaluate_steady(motion)
     assert e.status is Status.CONVERGED
     pressure, gap = e.film.oil.P * e.film.scales.pressure, e.film.solver.H * c
-    # the pin yields by half of the gap; the hexahedra are too stiff by 3 % beside the bosses, as in tests/solid/journal
+    # the pin yields by half of the gap; the hexahedra are too stiff by 3 % beside the bosses, as in
+    # tests/solid/test_harmonics.py
     assert pressure.max() == pytest.approx(film.pressure.max(), rel=0.01)
     assert gap.min() == pytest.approx((rigid + inwards).min(), rel=0.01)
     assert np.abs(gap - rigid - inwards).max() < 0.04 * np.abs(inwards).max()

@@ -13,8 +13,8 @@ from exudyn_ehd.film.models import film_grid
 from exudyn_ehd.joint.bore.shapes import ModalBore, NodalBore, vertex_means
 from exudyn_ehd.solid.bush import bore_modes
 from exudyn_ehd.solid.fe_bore import OUTSIDE
-from exudyn_ehd.solid.linear import held_solution
-from exudyn_ehd.solid.unrolled import patch
+from exudyn_ehd.solid.mesh import patch
+from exudyn_ehd.solid.total_lagrange import held_solution
 from tests.sampling import sample
 from tests.solid_pressures import pressure_loads
 from tests.solid_tetrahedra import tetrahedra

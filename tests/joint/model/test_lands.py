@@ -11,8 +11,8 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.supply.areas import axial_span, placed
-from exudyn_ehd.film.surfaces.asperity import AsperityContact
 from exudyn_ehd.film.surfaces.contact import WallContact
+from exudyn_ehd.film.surfaces.roughness import AsperityContact
 from exudyn_ehd.joint.heat.power import heat_and_exchange, heat_of
 from exudyn_ehd.joint.model.build import build_model
 

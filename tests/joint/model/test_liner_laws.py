@@ -12,8 +12,7 @@ from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.lubricant.shear_profile import EXACT, fluidity_table, gauss_points, profile
-from exudyn_ehd.film.surfaces.asperity import average_gap_ratio
-from exudyn_ehd.film.surfaces.patir_cheng import pressure_flow_factor
+from exudyn_ehd.film.surfaces.roughness import average_gap_ratio, pressure_flow_factor
 from exudyn_ehd.joint.model.build import build_model
 
 R, L, C, MU, SPEED = 0.02, 0.03, 20e-6, 0.02, 200.0

@@ -10,8 +10,8 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.fe_bore import ReducedBore
-from exudyn_ehd.solid.journal.turning import TurningJournal
-from exudyn_ehd.solid.unrolled import patch
+from exudyn_ehd.solid.mesh import patch
+from exudyn_ehd.solid.turning_journal import TurningJournal
 from exudyn_ehd.status import InputError, Status
 from tests.sampling import sample
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.surfaces.patir_cheng import nominal_gap, shear_flow_factor
+from exudyn_ehd.film.surfaces.roughness import nominal_gap, shear_flow_factor
 from exudyn_ehd.joint.heat.power import heat_and_exchange
 from exudyn_ehd.joint.model.build import build_model
 

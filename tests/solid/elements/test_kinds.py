@@ -6,8 +6,20 @@ from math import factorial, prod
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.elements.element import FLAT_TRIANGLE, QUADRILATERAL, TRIANGLE, face_of
-from exudyn_ehd.solid.elements.kinds import ELEMENTS, GAUSS8, GAUSS27, HAMMER4, HEX20, IRONS14, TET10, WALKINGTON14
+from exudyn_ehd.solid.elements.element import (
+    ELEMENTS,
+    FLAT_TRIANGLE,
+    GAUSS8,
+    GAUSS27,
+    HAMMER4,
+    HEX20,
+    IRONS14,
+    QUADRILATERAL,
+    TET10,
+    TRIANGLE,
+    WALKINGTON14,
+    face_of,
+)
 
 ROUNDING = 1e-13  # sums of 20 products of order one
 NAMES = [element.fem for element in ELEMENTS]

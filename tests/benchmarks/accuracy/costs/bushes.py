@@ -28,11 +28,10 @@ from exudyn_ehd.coupling.exudyn_solvers import ConfigureSolver
 from exudyn_ehd.coupling.run.sparse import SolveDynamicSparse
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import FiniteLength
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush, bore_modes
-from exudyn_ehd.solid.elements.element import Quadrature
-from exudyn_ehd.solid.elements.kinds import GAUSS27, IRONS14
+from exudyn_ehd.solid.elements.element import GAUSS27, IRONS14, Quadrature
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import EHDError

@@ -25,19 +25,17 @@ import numpy as np
 from exudyn_ehd.film.cavitation.closures import ElrodAdams, FullSommerfeld, Gumbel
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.density import DowsonHigginson
+from exudyn_ehd.film.lubricant.lubricant import VogelTemperature
 from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
-from exudyn_ehd.film.lubricant.temperature_viscosity import VogelTemperature
 from exudyn_ehd.film.models import FiniteLength, LongBearing, ShortBearing
 from exudyn_ehd.film.reynolds.turbulence import NgPan
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply.areas import AxialGroove, CircumferentialGroove, Hole, Pocket
-from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
-from exudyn_ehd.film.surfaces.contact import ArchardWear, RegularisedWall
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
+from exudyn_ehd.film.surfaces.contact import ArchardWear, ElasticLiner, RegularisedWall
 from exudyn_ehd.film.surfaces.profile import Crown
+from exudyn_ehd.film.surfaces.roughness import GreenwoodTripp, PatirCheng
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import EHDError
 from tests.benchmarks.accuracy.costs.growth import CLEARANCE, SPEED, plain_bearing

@@ -12,7 +12,7 @@ from exudyn_ehd.film.models import FiniteLength, LongBearing, ShortBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply.areas import AxialGroove
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff as Material

@@ -10,14 +10,12 @@ from typing import Any
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import FilmEnergy
-from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.lubricant.lubricant import Lubricant, VogelTemperature
 from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
-from exudyn_ehd.film.lubricant.temperature_viscosity import VogelTemperature
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.supply.areas import AxialGroove
-from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
-from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
+from exudyn_ehd.film.surfaces.roughness import GreenwoodTripp, PatirCheng
 from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from tests.benchmarks.accuracy.scenes import mechanisms

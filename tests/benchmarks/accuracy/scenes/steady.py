@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.model.impedance import ImpedanceModel
+from exudyn_ehd.joint.model.build import ImpedanceModel, build_model
 from exudyn_ehd.status import InputError, require_integer, require_number
 from exudyn_ehd.studies.film_errors import evaluate_at, measure_motions, motion_at, time_of_sweep
 from tests.benchmarks.accuracy.scenes.setting import Outcome, QuantityOfInterest, Setting

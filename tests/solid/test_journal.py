@@ -7,9 +7,9 @@ import pytest
 from scipy.sparse.linalg import splu
 
 import exudyn_ehd as ehd
-from exudyn_ehd.solid.journal import modes
-from exudyn_ehd.solid.journal.harmonics import Cylinder
-from exudyn_ehd.solid.journal.modes import _Reduction, journal_modes
+from exudyn_ehd.solid import journal as modes
+from exudyn_ehd.solid.harmonics import Cylinder
+from exudyn_ehd.solid.journal import _Reduction, journal_modes
 from tests.reference.elastic_rings import cylinder_yielding
 from tests.sampling import covering_places, sample
 
@@ -37,7 +37,7 @@ def bearing(journal, **options):
 
 @pytest.mark.parametrize(("tolerance", "measured"), [(0.05, {8: 2e-4, 24: 5.5e-3}), (0.1, {8: 6e-3})])
 def test_elements_through_a_solid_pin_yield_as_closed_forms_do(tolerance, measured):
-    """Errors that `exudyn_ehd.solid.journal.modes` names, in plane strain on one row of elements with many along z."""
+    """Errors that `exudyn_ehd.solid.journal` names, in plane strain on one row of elements with many along z."""
     r = _Reduction(pin(tolerance=tolerance), RADIUS, LENGTH).body.r
     body = Cylinder(r, np.linspace(0.0, 0.02 * RADIUS, 2), STEEL.lame)
     for n, error in measured.items():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_simpson, simpson
 
-from exudyn_ehd.film.heat.across import (
+from exudyn_ehd.joint.heat.across import (
     LOBATTO,
     at_heights,
     at_points,

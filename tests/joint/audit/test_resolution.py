@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.balance.resolution import resolution
+from exudyn_ehd.joint.audit.resolution import resolution
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.results import refined_peak
 

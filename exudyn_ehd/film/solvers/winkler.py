@@ -1,6 +1,6 @@
 """Winkler elements of a liner: pressure on them, deflection, contact, gap of the film, and mass balances.
 
-The equations are in `exudyn_ehd.film.solvers.liner.film`.
+The equations are in `exudyn_ehd.film.solvers.liner`.
 """
 
 from __future__ import annotations
@@ -12,11 +12,10 @@ from numba import njit
 
 from exudyn_ehd.film.cavitation.states import OIL, subtract_sink
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
-from exudyn_ehd.film.reynolds.balance import carried_fill, film_balance, terms_of, upstream, violation
-from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
+from exudyn_ehd.film.reynolds.balance import carried_fill, film_balance, link_derivatives, terms_of, upstream, violation
 from exudyn_ehd.film.reynolds.links import set_links
 from exudyn_ehd.film.solvers.film import FilmArrays
-from exudyn_ehd.film.solvers.liner.elements import (
+from exudyn_ehd.film.solvers.winkler_kernels import (
     Gaps,
     GapSlopes,
     Load,

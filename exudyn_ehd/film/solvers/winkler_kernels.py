@@ -1,6 +1,6 @@
 """Winkler elements of an elastic liner: pressure on them, deflection, gap of the film, and derivatives.
 
-The equations are in `exudyn_ehd.film.solvers.liner.film`. Symbols, all scaled: P unknown of the film; p pressure on the
+The equations are in `exudyn_ehd.film.solvers.liner`. Symbols, all scaled: P unknown of the film; p pressure on the
 elements, P itself or p(P) of an oil whose viscosity or density follows its pressure; pc cavity pressure in P; beta
 compliance; G true gap; H gap of the film (film gap), after a limiter; HF film gap on the links i -> i+1; D deflection;
 E = H - (film gap of the undeformed surfaces). ``_P``, ``_r``: derivatives to the unknown pressure and to the undeformed
@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.kernels import FAST
+from exudyn_ehd.compilation import FAST
 from exudyn_ehd.film.reynolds.balance import flat
 
 
@@ -219,7 +219,7 @@ def _correct(h_a, h_b, E_a, E_b, k):
 @njit(cache=True, fastmath=FAST)
 def add_gap_slopes(P, fill, full, rho, film, gap_slopes, load, rates, beta, by, slopes):
     """Add the derivatives of flows and storage through the gap to ``slopes`` of `balance.film_slopes`; ``by``: that of
-    `exudyn_ehd.film.reynolds.link_derivatives.link_derivatives`."""
+    `exudyn_ehd.film.reynolds.balance.link_derivatives`."""
     m, size = P.shape[1], P.size
     D, H, rate_P = gap_slopes.D_P.reshape(-1), gap_slopes.H_P.reshape(-1), gap_slopes.rate_P.reshape(-1)
     x, drive, steep = P.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1)

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.sparse import bmat, coo_matrix, csc_matrix
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.solid.linear import sparse_factor
+from exudyn_ehd.solid.total_lagrange import sparse_factor
 
 # Gauss points and weights of an interval, and the quadratic shape functions (points, 3) there with their slopes.
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)
@@ -138,7 +138,7 @@ class Cylinder:
     def solve(self, n: int, loads: np.ndarray, held: np.ndarray | None) -> np.ndarray:
         """Displacements (size, k) under loads with n waves around.
 
-        ``held`` (nodes,) of bool; None: free, its mean motion taken off as in `exudyn_ehd.solid.journal.modes`.
+        ``held`` (nodes,) of bool; None: free, its mean motion taken off as in `exudyn_ehd.solid.journal`.
         """
         K, u = self.stiffness(n), np.zeros_like(loads)
         free = np.ones(self.size, dtype=bool) if held is None else np.repeat(~held, 3)

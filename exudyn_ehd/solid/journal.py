@@ -30,7 +30,7 @@ from scipy.linalg import block_diag
 
 from exudyn_ehd.solid import pressure_modes as films
 from exudyn_ehd.solid.bush import ModalBush, require_tolerance
-from exudyn_ehd.solid.journal.harmonics import Cylinder, interpolation
+from exudyn_ehd.solid.harmonics import Cylinder, interpolation
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from exudyn_ehd.status import NOT_NEGATIVE, Checked, InputError, require_bool, require_type, require_vector
 from exudyn_ehd.storage import cached_arrays

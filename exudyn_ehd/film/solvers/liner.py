@@ -43,7 +43,7 @@ found. `FullSommerfeld` has none where surfaces part so fast that tension pulls 
 Newton's method (`exudyn_ehd.film.solvers.newton`) starts from the last film, else from a dry guess. If it fails,
 pseudo-transient continuation follows (`exudyn_ehd.film.solvers.sets`): an additional storage at every vertex slows the
 film down and is reduced step by step. The rupture line inside the cells is that of
-`exudyn_ehd.film.solvers.liner.line`.
+`exudyn_ehd.film.cavitation.rupture_line`.
 
 With beta = 0, the same code solves the film of a shear-thinning oil between rigid surfaces, whose conductances follow
 the pressure.
@@ -55,17 +55,17 @@ import copy
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.closures import has_unfed_row
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, mean_in_cells
+from exudyn_ehd.film.cavitation.rupture_line import TOUCHING, AtLine, FilmLine, GapChain
 from exudyn_ehd.film.cavitation.states import OIL, RUPTURE
-from exudyn_ehd.film.cavitation.system import has_unfed_row
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.film import FilmArrays
-from exudyn_ehd.film.solvers.liner.line import TOUCHING, AtLine, FilmLine, GapChain
-from exudyn_ehd.film.solvers.liner.winkler import Liner, WinklerElements, find_slopes, liner_residual
 from exudyn_ehd.film.solvers.matrix import factor_film
 from exudyn_ehd.film.solvers.newton import GOES_ON, begin, course_from, end_of, offset_pressures, proceed, solve_film
 from exudyn_ehd.film.solvers.sets import pseudo_time
+from exudyn_ehd.film.solvers.winkler import Liner, WinklerElements, find_slopes, liner_residual
 from exudyn_ehd.status import Status
 
 
@@ -233,7 +233,7 @@ class LinerFilm(WinklerElements):
         find_slopes(self.P, fill, rho, self.film_fields, *self._seen)
 
     def follows(self) -> np.ndarray:
-        """Derivatives (4, n m) of deflection, E, gap and gap on links, see `exudyn_ehd.film.gradients.link_rows`."""
+        """Derivatives (4, n m) of deflection, E, gap and gap on links, see `exudyn_ehd.film.reynolds.gap.link_rows`."""
         follows: np.ndarray = self.slope_fields[2:6].reshape(4, -1)
         return follows
 

@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 from scipy.sparse.linalg import splu
 
 import exudyn_ehd as ehd
-from exudyn_ehd.solid.journal.harmonics import Cylinder, interpolation
-from exudyn_ehd.solid.journal.modes import ElasticJournal, HeldBands, HeldEnds, _Reduction, wall_edges
+from exudyn_ehd.solid.harmonics import Cylinder, interpolation
+from exudyn_ehd.solid.journal import ElasticJournal, HeldBands, HeldEnds, _Reduction, wall_edges
 from tests.reference.elastic_rings import bore_displacement, cylinder_yielding
 from tests.sampling import sample
 
@@ -104,9 +104,8 @@ def test_held_pin_bends_like_a_beam(inner):
 )
 def test_against_hexahedra(held, tolerance):
     """A hollow pin under a pressure of all waves, on a structured mesh of 20-node elements held at the same places."""
-    from exudyn_ehd.solid.linear import sparse_factor
     from exudyn_ehd.solid.mesh import HollowCylinder
-    from exudyn_ehd.solid.total_lagrange import TotalLagrange
+    from exudyn_ehd.solid.total_lagrange import TotalLagrange, sparse_factor
     from tests.solid_pressures import pressure_loads
 
     mesh = HollowCylinder(

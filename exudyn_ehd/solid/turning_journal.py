@@ -25,8 +25,8 @@ from functools import cached_property
 import numpy as np
 
 from exudyn_ehd.solid.fe_bore import FESurface, ReducedBore
-from exudyn_ehd.solid.journal.harmonics import with_middles
-from exudyn_ehd.solid.journal.modes import JournalModes
+from exudyn_ehd.solid.harmonics import with_middles
+from exudyn_ehd.solid.journal import JournalModes
 from exudyn_ehd.solid.pressure_modes import AROUND
 from exudyn_ehd.status import ROUNDING, InputError
 

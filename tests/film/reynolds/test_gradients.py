@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from exudyn_ehd import bearing_grid
-from exudyn_ehd.film.gradients import Gradients, join, link_rows
+from exudyn_ehd.film.reynolds.gap import Gradients, join, link_rows
 
 N, M = 9, 5
 
