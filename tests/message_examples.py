@@ -1418,7 +1418,7 @@ ehd.equilibrium(springy, speed=300.0, load=(0.0, -5.0))
 ehd.equilibrium(ehd.TiltingPads(**plain, pad_thickness=0.01), speed=300.0, load=(0.0, 0.0))
 
 three = dataclasses.replace(pads, pads=3, extent=1.3, preload=0.05)
-ehd.equilibrium(three, speed=300.0, load=(500.0, -300.0))
+ehd.equilibrium(three, speed=300.0, load=(800.0, -480.0))
 
 rest.reduced(0.0)
 

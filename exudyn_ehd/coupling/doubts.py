@@ -77,7 +77,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Side
 from exudyn_ehd.coupling.exudyn_solvers import USUAL_RADIUS, Solver
 from exudyn_ehd.coupling.kinematics.relative import eccentricity_ratios, levers_of
-from exudyn_ehd.coupling.record.history import JointHistory
+from exudyn_ehd.coupling.record.history import JointHistory, error_of_pockets
 from exudyn_ehd.joint.audit.findings import LIMITS
 from exudyn_ehd.joint.audit.resolution import FADING, Resolution, coarse_film, is_judged, resolution
 from exudyn_ehd.joint.audit.samples import RING_COMPLIANCE, adiabatic_rise, time_mean
@@ -303,23 +303,6 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, reasons: Ite
         )
     doubts = worth_an_audit(bearing, history) if hasattr(bearing, "reference_force") else []
     return text + (f"; worth an audit (joint.audit()): {', '.join(doubts)}." if doubts else ".")
-
-
-def error_of_pockets(bearing: object, history: JointHistory) -> tuple[float, int]:
-    """Largest error of a pressure behind a restrictor in one step, over the highest pressure there, and the step's end.
-
-    Areas with a compressible volume are integrated by backward Euler: the error of a step is half of the change of the
-    rate in it, times the step. Without such a volume the error is 0.
-    """
-    supply = getattr(bearing, "supply", ())
-    if history.time.size < 3 or not any(getattr(area.supply, "compressible_volume", 0.0) > 0.0 for area in supply):
-        return 0.0, 0
-    steps = np.diff(history.time)
-    pressures = np.array([history.lowest_pocket_pressure, history.highest_pocket_pressure])
-    errors = 0.5 * steps[1:] * np.abs(np.diff(np.diff(pressures) / steps)).max(axis=0)
-    highest = max(float(np.abs(pressures).max()), 1e-300)
-    k = int(errors.argmax())
-    return float(errors[k]) / highest, k + 2
 
 
 def spins(bearing: object, history: JointHistory) -> np.ndarray:

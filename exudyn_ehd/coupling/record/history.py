@@ -425,3 +425,20 @@ def make_row(
     if load is not None:
         np.concatenate(load, out=row[LOAD])
     return row
+
+
+def error_of_pockets(bearing: object, history: JointHistory) -> tuple[float, int]:
+    """Largest error of a pressure behind a restrictor in one step, over the highest pressure there, and the step's end.
+
+    Areas with a compressible volume are integrated by backward Euler: the error of a step is half of the change of the
+    rate in it, times the step. Without such a volume the error is 0.
+    """
+    supply = getattr(bearing, "supply", ())
+    if history.time.size < 3 or not any(getattr(area.supply, "compressible_volume", 0.0) > 0.0 for area in supply):
+        return 0.0, 0
+    steps = np.diff(history.time)
+    pressures = np.array([history.lowest_pocket_pressure, history.highest_pocket_pressure])
+    errors = 0.5 * steps[1:] * np.abs(np.diff(np.diff(pressures) / steps)).max(axis=0)
+    highest = max(float(np.abs(pressures).max()), 1e-300)
+    k = int(errors.argmax())
+    return float(errors[k]) / highest, k + 2

@@ -325,7 +325,8 @@ class FilmAnswers(FilmArrays):
             return None
         if self._fills is None:
             (gaps, flux, _), v = self._at_line(), (self.vx, self.vz)
-            carried, held = self.oil_line.gradients(gaps, flux, v, self.flow_x, self.squeeze, self.grid.mesh)
+            squeeze = self.squeeze and not (self.elements is not None and self.elements.takes_up_squeeze)
+            carried, held = self.oil_line.gradients(gaps, flux, v, self.flow_x, squeeze, self.grid.mesh)
             self._fills = self._to_motion(carried), self._to_motion(held)
         return self._fills
 

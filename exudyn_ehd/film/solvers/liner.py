@@ -170,6 +170,8 @@ class LinerFilm(WinklerElements):
             s.kx *= self.thin.slide(flux, f.vx)
         density = 1.0 if f.law is None else float(f.rho[~g.fixed].min(initial=np.inf))
         gaps = gaps.copy()
+        if self.takes_up_squeeze:
+            f.H_t[:] = 0.0
         f.set_right_hand_side()
         s.kx[shut] = 0.0
         line = f.line if isinstance(f.line, FilmLine) else f.oil_line

@@ -170,6 +170,12 @@ class WinklerElements:
         return (self.gaps.D - self.deflection_old) * self.deflection_inverse
 
     @property
+    def takes_up_squeeze(self) -> bool:
+        """Return whether the rates at an instant are asked for. Pressures and fills are then those of the state before,
+        as the deflection takes up the squeeze: no line inside the cells may follow it."""
+        return self.beta > 0.0 and self.film.system.instant
+
+    @property
     def true_rate(self) -> np.ndarray:
         """Rate of `true_gap` (n, m)."""
         return self.rigid[2] + self.deflection_rate

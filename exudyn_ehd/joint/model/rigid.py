@@ -240,7 +240,7 @@ class BearingModel:
         s, remembers, liner, effects = self.solver, self.remembers_mass, self.parts.liner, self.effects
         found = (self.remembers_deflection or s.pockets is not None) and self.evaluate(motion).film is not None
         void, mass, outflow = s.flooded() if remembers else (None, None, None)
-        return replace(
+        new = replace(
             History() if effects.thermal is None else effects.thermal.first_memory(self.grid.shape),
             void=void,
             mass=mass,
@@ -249,6 +249,11 @@ class BearingModel:
             deflection=liner.deflection if found and self.remembers_deflection and liner is not None else None,
             pockets=s.pockets if found else None,
         )
+        for _ in range(2 if found and s.oil_line is not None else 0):
+            # a vertex at a line inside the cells is full from another pressure on than in the film with cavities
+            if self.evaluate(motion, new).film is not None and liner is not None:
+                new = replace(new, deflection=liner.deflection)
+        return new
 
     def next_history(self, film: SolvedFilm) -> History | None:
         """History at the end of a solved film's step."""

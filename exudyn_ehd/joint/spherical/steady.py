@@ -278,8 +278,14 @@ class SphericalResult:
 
 
 def _derivatives(found: SphericalEvaluation) -> np.ndarray:
-    """Tangent (6, 9); nan where the one-sided derivatives of a film at rest differ."""
-    tangent, sides = np.delete(found.tangent(), (3, 7), axis=1), found.sides()
+    """Tangent (6, 9); nan where the one-sided derivatives of a film at rest differ.
+
+    For velocities the oil content is constant, also at velocity 0.
+    """
+    tangent, sides, film = np.delete(found.tangent(), (3, 7), axis=1), found.sides(), found.film
+    if found.model.remembers_mass and sides is None and film is not None and not found.motion[VELOCITY].any():
+        kept = replace(found.model.next_history(film), temperature=film.temperature)
+        tangent[:, 3:6] = found.model.evaluate(found.motion, kept).tangent()[:, VELOCITY]
     if sides is not None:
         blocks = np.delete(sides, (3, 7), axis=2).reshape(2, 2, 3, 3, 3)
         largest = LARGEST_SPREAD * np.abs(blocks).max(axis=(0, 2, 4), keepdims=True)[0]
@@ -308,7 +314,8 @@ def steady_spherical(
         Angular velocity of the ball as seen from the socket.
 
     The film is a steady one. With `ElrodAdams` and a velocity it is the film at the instant at which a ball at rest
-    begins to move: its oil content is that of the steady film at rest, and is constant in ``tangent``. With
+    begins to move: its oil content is that of the steady film at rest, and is constant in ``tangent``. Without a
+    velocity, this holds for the velocity's columns of ``tangent``; the others are derivatives of steady films. With
     ``thermal`` the film has the temperature at which heat and cooling are in balance.
 
     Returns

@@ -30,7 +30,7 @@ import numpy as np
 
 from exudyn_ehd.joint.balance.newton import FALLS, PATIENCE, ROUNDS
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
-from exudyn_ehd.joint.static.pads import Pad, PadLoads, TiltingPads
+from exudyn_ehd.joint.static.pads import Pad, PadLoads, TiltingPads, open_tilts
 from exudyn_ehd.joint.static.steady import SteadyResult, result_at
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import SMALL, FilmError, InputError, require_number, warn_user
@@ -49,43 +49,13 @@ ROUNDING = 1e-11
 PLACES = (0.98, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.02)
 # Offsets from the position with the largest moment, for a second series of evaluations around it.
 BETWEEN = np.linspace(0.08, -0.08, 9)
-# Eccentricities of initial guesses along the load, over the assembled clearance; more of them: a start nearer to the
-# solution. If all fail, directions of further initial guesses from the load, because a load may push the journal of a
-# bearing with few pads between two of them.
+# Eccentricities of initial guesses along the load, over the assembled clearance, and distances from an unstable
+# position; more of them: a start nearer to the solution. If all fail, directions of further initial guesses from the
+# load, because a load may push the journal of a bearing with few pads between two of them.
 STARTS = np.array([0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.05, 1.3, 1.6, 1.9])
 TURNS = np.exp(1j * np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9]))
 # Number of initial guesses, those with the smallest unbalance, from which a search is made.
 MOST_STARTS = 2
-# Distances over the assembled clearance from an unstable position at which searches for a stable one begin. More of
-# them: found more often, slower.
-FALLS_BY = np.array([0.1, -0.1, 0.3, -0.3, 0.6, -0.6, 1.0, -1.0])
-# Angle from the pivot, rad, up to which the gap of an unloaded pad must widen along the pad.
-STEEPEST = 1.4
-# Largest overlap of surfaces with a contact, over the machined clearance. Smaller: pads rest less deep on the contact.
-OVERLAP = 0.1
-
-
-def open_tilts(pad: Pad, journal: np.ndarray, shift: float) -> tuple[float, float, float] | None:
-    """Two tilts between which the film of a pad is open, and the tilt from which on the film widens.
-
-    The gap is ``c - a cos psi - b sin psi`` at the angles psi of the columns from the pivot, with the journal's place
-    (a, b) in the pad's frame; b grows by the pivot's distance times the tilt. The tilts are in ascending order of the
-    sense of rotation. None if the gap is closed at the pivot.
-    """
-    a, b = np.array((pad.radial, pad.across)) @ pad.place(journal, shift, 0.0)
-    sense, psi = math.copysign(1.0, pad.speed), pad.columns
-    room = pad.model.bearing.radial_clearance * (1.0 + (OVERLAP if pad.model.effects.contacts else 0.0)) - a * np.cos(
-        psi
-    )
-    if room.min() <= 0.0:
-        return None
-    lever = sense * np.sin(psi)
-    before, behind = lever < 0.0, lever > 0.0
-    lowest, highest = np.max(room[before] / lever[before]), np.min(room[behind] / lever[behind])
-    # the gap's slope along the motion, a sin psi - b cos psi, is positive all over the pad
-    widening = max(float(np.min(sense * a * np.tan(psi[np.abs(psi) < STEEPEST]))), 0.9 * lowest)
-    lower, upper, widening = ((sense * value - b) / (pad.arm - a) for value in (lowest, highest, widening))
-    return lower, upper, widening
 
 
 def settled(pad: Pad, journal: np.ndarray, shift: float, tipped: bool) -> PadLoads | None:
@@ -251,7 +221,7 @@ class PadSearch:
         """Return a position to which the journal falls from the one that was found; this one, if it does not fall."""
         if (direction := found.falls()) is None:
             return found
-        for length in FALLS_BY * self.bearing.radial_clearance:
+        for length in np.outer(STARTS[1:8:2], (1.0, -1.0)).ravel() * self.bearing.radial_clearance:
             start = self.at(found.unknowns + length * direction)
             here = found if start is None else self._descend(start)
             if here.is_balanced(self.size) and here.falls() is None:

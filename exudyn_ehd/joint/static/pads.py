@@ -57,6 +57,11 @@ from exudyn_ehd.status import (
     require_vector,
 )
 
+# Angle from the pivot, rad, up to which the gap of an unloaded pad must widen along the pad.
+STEEPEST = 1.4
+# Largest overlap of surfaces with a contact, over the machined clearance. Smaller: pads rest less deep on the contact.
+OVERLAP = 0.1
+
 
 @dataclass(frozen=True, kw_only=True)
 class TiltingPads(Checked):
@@ -371,3 +376,26 @@ class Pad:
             return None
         to_forces, by_place = self._maps(own.tilt, own.motion)
         return FilmMemory(response, slow, to_forces[:, LOADS] * SIGNS, by_place[:PLACES])
+
+
+def open_tilts(pad: Pad, journal: np.ndarray, shift: float) -> tuple[float, float, float] | None:
+    """Two tilts between which the film of a pad is open, and the tilt from which on the film widens.
+
+    The gap is ``c - a cos psi - b sin psi`` at the angles psi of the columns from the pivot, with the journal's place
+    (a, b) in the pad's frame; b grows by the pivot's distance times the tilt. The tilts are in ascending order of the
+    sense of rotation. None if the gap is closed at the pivot.
+    """
+    a, b = np.array((pad.radial, pad.across)) @ pad.place(journal, shift, 0.0)
+    sense, psi = math.copysign(1.0, pad.speed), pad.columns
+    room = pad.model.bearing.radial_clearance * (1.0 + (OVERLAP if pad.model.effects.contacts else 0.0)) - a * np.cos(
+        psi
+    )
+    if room.min() <= 0.0:
+        return None
+    lever = sense * np.sin(psi)
+    before, behind = lever < 0.0, lever > 0.0
+    lowest, highest = np.max(room[before] / lever[before]), np.min(room[behind] / lever[behind])
+    # the gap's slope along the motion, a sin psi - b cos psi, is positive all over the pad
+    widening = max(float(np.min(sense * a * np.tan(psi[np.abs(psi) < STEEPEST]))), 0.9 * lowest)
+    lower, upper, widening = ((sense * value - b) / (pad.arm - a) for value in (lowest, highest, widening))
+    return lower, upper, widening

@@ -16,6 +16,7 @@ import scenes
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling import doubts
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.record.history import error_of_pockets
 from exudyn_ehd.joint.step_error import enough_steps
 
 
@@ -244,13 +245,13 @@ def test_pressures_behind_restrictors_that_settle_within_few_steps_are_named(lin
     for over, said in ((0.03, False), (0.5, True)):
         pressure = 2e6 / (1.0 + over) ** steps
         made = dataclasses.replace(history, lowest_pocket_pressure=0.5 * pressure, highest_pocket_pressure=pressure)
-        error, k = doubts.error_of_pockets(bearing, made)
+        error, k = error_of_pockets(bearing, made)
         true = pressure[k] - pressure[k - 1] * np.exp(-over)
         assert error == pytest.approx(true / 2e6, rel=over)
         text = f"error of the pressure behind a restrictor {100.0 * error:.0f} % of the highest one in the step to "
         assert (text in doubts.line("bearing", bearing, made)) == said
     rigid = dataclasses.replace(bearing.supply[0], supply=dataclasses.replace(feed, compressible_volume=0.0))
-    assert doubts.error_of_pockets(dataclasses.replace(bearing, supply=(rigid,)), made) == (0.0, 0)
+    assert error_of_pockets(dataclasses.replace(bearing, supply=(rigid,)), made) == (0.0, 0)
 
 
 @pytest.mark.parametrize(("spin", "needed"), [(0.0, "800 steps in all"), (-20.0 * np.pi, "400 steps per turn")])
@@ -276,6 +277,7 @@ import logging, sys
 if "configured" in sys.argv:
     logging.basicConfig(stream=sys.stdout, level=logging.INFO, format="own %(message)s")
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.record.history import error_of_pockets
 from exudyn_ehd.coupling import doubts
 if "off" in sys.argv:
     logging.getLogger("exudyn_ehd").setLevel("WARNING")

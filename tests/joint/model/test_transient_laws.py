@@ -141,3 +141,48 @@ def test_newton_comes_back_from_a_squeeze_that_no_pressure_carries(closure, law,
                     break
             assert status is ehd.Status.CONVERGED
             assert speed == pytest.approx(2e-5, rel=1e-6)
+
+
+@pytest.mark.parametrize("density", [None, ehd.DowsonHigginson()], ids=("constant", "compressible"))
+@pytest.mark.parametrize("in_cells", (False, True))
+@pytest.mark.parametrize("velocity", (0.0, 0.004, -0.02))
+def test_an_elastic_liner_does_not_jump_at_the_start(density, in_cells, velocity):
+    """At an instant pressures and deflections are those of the state before: the loss is that of sliding and squeeze,
+    and the liner stores a small part of it. A prescribed pressure compresses the oil beside it."""
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025,
+        length=0.03,
+        radial_clearance=30e-6,
+        lubricant=ehd.Lubricant(viscosity=0.02, density_law=density),
+        cavitation=ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=in_cells),
+        bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=5e9),
+        end_pressures=(2e5, 0.0),
+        supply=(ehd.AxialGroove(angle=1.5, width_angle=0.4, length=0.02, pressure=3e5),),
+    )
+    model, motion = build_model(bearing), np.array([1.2e-5, 0, 0, 0, velocity, 0, 0, 0, 300.0, 0])
+    found = model.evaluate(motion, model.initial_history(motion), 0.0).quantities()
+    rigid = build_model(dataclasses.replace(bearing, bush=None))
+    expected = rigid.evaluate(motion, rigid.initial_history(motion), 0.0).quantities()
+    assert found["power_loss"] == pytest.approx(expected["power_loss"], rel=0.1)
+    assert abs(found["stored_power"]) < 0.02 * found["power_loss"]
+    assert abs(found["supply_flow"]) < 2.0 * abs(expected["supply_flow"]) + 1e-6
+
+
+@pytest.mark.parametrize("in_cells", (False, True))
+@pytest.mark.parametrize("velocity", (1e-3, -1e-3, 0.1, -0.1))
+def test_a_velocity_changes_no_force_of_a_film_on_a_liner(in_cells, velocity):
+    """The liner takes up the squeeze: force and loss are those without a velocity, but for the gap that it opens."""
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025,
+        length=0.03,
+        radial_clearance=30e-6,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        cavitation=ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=in_cells),
+        bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=5e9),
+    )
+    still, moves = (
+        ehd.steady(bearing, speed=300.0, eccentricity_ratio=0.6, velocity=(v, 0.0)) for v in (0.0, velocity)
+    )
+    assert moves.force == pytest.approx(still.force, rel=2e-4)
+    assert moves.friction_torque == pytest.approx(still.friction_torque, rel=2e-4)
+    assert moves.power_loss == pytest.approx(still.power_loss, rel=0.5 * abs(velocity) + 1e-4)

@@ -234,3 +234,28 @@ def test_steady_films_without_a_source_of_oil_say_so():
         ehd.steady_spherical(ball, place=(0.5 * C, 0.0, 0.0), angular_velocity=(0.0, 0.0, 30.0))
     fed = ehd.steady_spherical(ball, place=(0.5 * C, 0.0, 0.0), angular_velocity=(30.0, 10.0, 30.0))
     assert 0.0 < fed.fill.min() < 1.0 and np.isfinite(fed.tangent).all()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_derivatives_to_the_velocity_at_rest_are_those_of_the_force(seed):
+    """`steady_spherical` keeps the oil content of the film at rest while the ball begins to move."""
+    rng = np.random.default_rng(seed)
+    ball = ehd.SphericalBearing(
+        ball_radius=0.015,
+        radial_clearance=30e-6,
+        lubricant=ehd.Lubricant(viscosity=0.1),
+        socket_angles=((0.7, math.pi - 0.7), (0.0, 2.0))[seed % 2],
+        cavitation=VAPOUR,
+    )
+    e, at = rng.normal(size=3), {"angular_velocity": 80.0 * rng.normal(size=3)}
+    at["place"] = 0.6 * 30e-6 * e / np.linalg.norm(e)
+
+    def load(velocity):
+        film = ehd.steady_spherical(ball, **at, velocity=velocity)
+        return np.concatenate((film.force, np.cross(at["place"], film.force) + film.torque))
+
+    found = ehd.steady_spherical(ball, **at).tangent[:, 3:6]
+    for k, velocity in enumerate(1e-6 * np.eye(3)):
+        assert found[:, k] == pytest.approx(
+            (load(velocity) - load(-velocity)) / 2e-6, abs=1e-3 * np.abs(found[:3]).max()
+        )
