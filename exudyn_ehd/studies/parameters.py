@@ -30,7 +30,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.progress import is_shown
-from exudyn_ehd.status import EHDError, InputError, require_integer
+from exudyn_ehd.status import EHDError, InputError, require_integer, require_number
 from exudyn_ehd.studies.rows import Row, RowFile, require_executor, rows_of
 from exudyn_ehd.tables import Table
 
@@ -176,7 +176,8 @@ class EquilibriumPoint:
     """A function for `parameter_study`: equilibrium of a bearing under a load, with parameters replaced by name.
 
     Names that the study may vary: the bearing's ``journal_radius``, ``length``, ``radial_clearance`` (m);
-    ``viscosity`` of its lubricant (Pa s); ``speed`` (rad/s); ``load`` (its size, N; the direction stays).
+    ``viscosity`` of its lubricant (Pa s); ``speed`` (rad/s); ``load`` (its size, N, at least 0; the direction stays,
+    and is -y for a load of 0).
 
     Parameters
     ----------
@@ -204,7 +205,9 @@ class EquilibriumPoint:
         own = dict(parameters)
         speed, load = own.pop("speed", self.speed), np.array(self.load)
         if "load" in own:
-            load = load / np.hypot(*load) * own.pop("load")
+            size = require_number("EquilibriumPoint: load", own.pop("load"), "N", at_least=0.0)
+            # a load without a direction acts along -y
+            load = np.array([0.0, -size]) if not load.any() else load / np.hypot(*load) * size
         bearing = varied(self.bearing, own)
         eq = equilibrium(bearing, speed=speed, load=(float(load[0]), float(load[1])))
         names = ("minimum_gap", "peak_pressure", "friction_torque", "power_loss", "leakage", "sommerfeld_number")

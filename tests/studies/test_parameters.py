@@ -326,3 +326,11 @@ def test_a_second_call_computes_what_is_missing(tmp_path, processes):
     file.write_text("something else\n")
     with pytest.raises(InputError, match="holds no rows of a study"):
         study([1])
+
+
+def test_size_and_direction_of_a_load(point):
+    """Sizes are at least 0; a load of size 0 has no direction, and acts along -y where a study gives it a size."""
+    still = dataclasses.replace(point, load=(0.0, 0.0))
+    assert still({"load": 800.0}) == dataclasses.replace(point, load=(0.0, -1.0))({"load": 800.0})
+    with pytest.raises(ehd.InputError, match="EquilibriumPoint: load"):
+        point({"load": -800.0})

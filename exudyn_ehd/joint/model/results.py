@@ -122,7 +122,7 @@ def quantities(film: SolvedFilm, wear: Wear | None = None) -> dict[str, float]:
         out["bore_displacement"] = float(np.abs(p.liner.deflection).max()) * p.bearing.radial_clearance
     if wear is not None:
         depth = p.bearing.radial_clearance * wear.grown(film)
-        out |= {"wear_depth": float(depth.max()), "worn_volume": R**2 * float(np.sum(depth * area))}
+        out |= {"wear_depth": float(depth.max()), "worn_volume": R**2 * float(np.vdot(depth, p.grid.weight))}
     return out
 
 

@@ -109,9 +109,9 @@ class TiltingPads(Checked):
     turbulence : NgPan, Hirs or None, default None
         Turbulent films; None: laminar.
     thermal : LumpedThermal, FilmEnergy or None, default None
-        Temperature of the films, as for a `JournalBearing` with an ``arc``: oil that leaves a pad heats the oil that
-        enters it. `equilibrium` computes the temperature in balance with every film; K and C hold at constant
-        temperature.
+        Temperature of the films, as for a `JournalBearing` with an ``arc``: oil that leaves a pad at its edges enters
+        it again, as far as ``carry_over`` says; pads do not heat each other. `equilibrium` computes the temperature in
+        balance with every film; K and C hold at constant temperature.
     end_pressures : (float, float), default (0.0, 0.0)
         Gauge pressures at both ends of the pads along the axis, Pa.
     edge_pressures : (float, float), default (0.0, 0.0)

@@ -179,7 +179,8 @@ class SteadyResult(FilmRecord, FilmPictures):
         the largest pressure.
     friction_torque, friction_torque_unbroken : float
         Torque on the journal about its own axis, N m; negative if it brakes a positive spin. The first contains the
-        contact and the shear of the whole clearance with cavities; the second only the shear of the unbroken film.
+        contact and the shear of the whole clearance with cavities; the second only the shear of the unbroken film. With
+        `ElrodAdams` the latter ends at the last full vertex: on the default grid it is up to 5 % too small.
     friction_torque_bush : float
         Torque on the bush about the bearing's axis, N m: minus ``moment[2]``. It is smaller than that on the journal
         by the force times its lever arm, the eccentricity.
@@ -194,7 +195,8 @@ class SteadyResult(FilmRecord, FilmPictures):
         inlet_flow and the flow variable Q / (R c N L) = inlet_flow / (R c N L), N = omega / (2 pi).
     oil_flow : float
         Total oil flow: fresh oil that passes through the film, m3/s. It replaces oil that leaves through ends and
-        supply areas; without end pressures and supply areas it is the leakage. With an arc: sum of ``supply_flows``.
+        supply areas. Without end pressures and supply areas it is the leakage, unless a cavity below ambient pressure
+        takes in oil at an end: the leakage is the net flow. With a single arc: sum of ``supply_flows``.
     supply_flows : (k,) array
         Oil that every area of ``bearing.supply`` feeds into the film, m3/s. With arcs, two values for each arc come
         first: oil that enters at its leading and at its trailing edge, 0 for outflow.
@@ -222,7 +224,8 @@ class SteadyResult(FilmRecord, FilmPictures):
         including the films on end faces. None for an isothermal bearing.
     supply_temperature : float or None
         Temperature of the oil that enters, K: the given one, or that of a `Sump`; None for an isothermal bearing. The
-        oil leaves at this temperature plus ``heat_by_oil`` over ``oil_flow`` times density and specific heat.
+        oil leaves at this temperature plus ``heat_by_oil`` over ``oil_flow`` times density and specific heat; with a
+        single arc at a higher one, because oil that has left at an edge is a part of what enters.
     walls : Walls or None
         Temperatures of bush and journal, and the clearance between them; None if neither conducts and the film has one
         temperature across it.

@@ -222,7 +222,7 @@ def test_wear_grows_by_archard():
     depth = rate * model.parts.contacts.P[0] * math.hypot(R * SPEED, 1.0) * step
     np.testing.assert_allclose(after.wear * C, depth, rtol=1e-13)
     assert told["wear_depth"] == pytest.approx(depth.max(), rel=1e-13)
-    assert told["worn_volume"] == pytest.approx(R**2 * np.sum(depth * model.grid.area), rel=1e-13)
+    assert told["worn_volume"] == pytest.approx(R**2 * np.sum(depth * model.grid.weight), rel=1e-13)
     assert "worn_volume" not in build_model(bearing(asperity=ASPERITY)).evaluate(motion).quantities()
     assert not start.wear.any()
     accelerated = build_model(bearing(asperity=ASPERITY, wear=ehd.ArchardWear(wear_rate=rate / 1e3, acceleration=1e3)))
