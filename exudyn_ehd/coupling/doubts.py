@@ -247,8 +247,7 @@ def warn_of_radius(solver: Solver | None) -> None:
 
 
 LOGGER = logging.getLogger("exudyn_ehd")
-# Temperature rise in K above which the summary line gives no number, because the estimate with a constant viscosity is
-# useless there; with hardly any outflow it grows without bound.
+# Largest temperature rise, K, that the summary line states; larger estimates at a constant viscosity are useless.
 HOTTEST = 100.0
 
 
@@ -285,22 +284,20 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, reasons: Ite
         if np.any(np.isfinite(values)):
             k = int(worst(values))
             text += f", {title} {factor * values[k]:.3g} {unit} at {time[k]:.6g} s"
-    counts = Counter(reasons)
-    why = "; ".join(f"{count} x {reason}" for reason, count in counts.most_common())
-    text += f", halved steps: {counts.total()} ({why})" if why else ""
+    if counts := Counter(reasons):
+        why = "; ".join(f"{count} x {reason}" for reason, count in counts.most_common())
+        text += f", halved steps: {counts.total()} ({why})"
     error = float(np.nanmax(h.step_error, initial=0.0))
     if error > LIMITS["time step"].value:
-        k = int(np.nanargmax(h.step_error))
+        at = time[np.nanargmax(h.step_error)]
         text += (
-            f", error of the time steps {100.0 * error:.0f} % of the minimum film thickness at {time[k]:.6g} s: take "
+            f", error of the time steps {100.0 * error:.0f} % of the minimum film thickness at {at:.6g} s: take "
             f"{enough_steps(time, h.motion[:, 8], h.step_error, h.step_count)}"
         )
     error, k = error_of_pockets(bearing, history)
     if error > LIMITS["time step"].value:
-        text += (
-            f", error of the pressure behind a restrictor {100.0 * error:.0f} % of the highest one in the step to "
-            f"{time[k]:.6g} s, which no estimate of the film's error contains: take smaller steps there"
-        )
+        share = f"{100.0 * error:.0f} % of the highest one in the step to {time[k]:.6g} s"
+        text += f", error of the pressure behind a restrictor {share}, on top of the film's: take smaller steps"
     doubts = worth_an_audit(bearing, history) if hasattr(bearing, "reference_force") else []
     return text + (f"; worth an audit (joint.audit()): {', '.join(doubts)}." if doubts else ".")
 

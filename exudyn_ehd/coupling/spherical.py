@@ -64,7 +64,8 @@ class SphericalFailures(Failures):
 
     def place(self, motion: np.ndarray) -> str:
         """Describe the ball's position at a motion (10,), for messages."""
-        x, y, z = (motion[:3] / self.bearing.radial_clearance).tolist()
+        # without round-off, which differs between machines
+        x, y, z = (np.round(motion[:3] / self.bearing.radial_clearance, 9) + 0.0).tolist()
         gap = self.bore.smallest(motion)
         return f"the ball at ({x:.4g}, {y:.4g}, {z:.4g}) clearances, minimum gap of the rigid surfaces {gap:.6g} m; "
 

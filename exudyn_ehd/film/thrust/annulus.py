@@ -187,7 +187,7 @@ class ThrustFaces(Checked):
         Gap of either face, on the lands, with the journal in the middle, m: half of the axial play.
     profile : TaperLand, StepLand or None, default None
         Pads on both faces; None: plane faces.
-    cavitation : SwiftStieber, Gumbel, FullSommerfeld, Closure or None, default None
+    cavitation : SwiftStieber, FullSommerfeld, Gumbel, Closure or None, default None
         Cavitation model of the faces; None: that of the bearing.
     contact : RegularisedWall or None, default None
         Smooth wall that carries load before a gap vanishes; None: a vanishing gap ends the run with an error.

@@ -240,19 +240,14 @@ class BearingModel:
         s, remembers, liner, effects = self.solver, self.remembers_mass, self.parts.liner, self.effects
         found = (self.remembers_deflection or s.pockets is not None) and self.evaluate(motion).film is not None
         void, mass, outflow = s.flooded() if remembers else (None, None, None)
-        new = replace(
-            History() if effects.thermal is None else effects.thermal.first_memory(self.grid.shape),
-            void=void,
-            mass=mass,
-            outflow=outflow,
-            wear=None if effects.wear is None else effects.wear.field(None).copy(),
-            deflection=liner.deflection if found and self.remembers_deflection and liner is not None else None,
-            pockets=s.pockets if found else None,
-        )
-        for _ in range(2 if found and s.oil_line is not None else 0):
-            # a vertex at a line inside the cells is full from another pressure on than in the film with cavities
-            if self.evaluate(motion, new).film is not None and liner is not None:
-                new = replace(new, deflection=liner.deflection)
+        new = History() if effects.thermal is None else effects.thermal.first_memory(self.grid.shape)
+        wear = None if effects.wear is None else effects.wear.field(None).copy()
+        new = replace(new, void=void, mass=mass, outflow=outflow, wear=wear, pockets=s.pockets if found else None)
+        if found and self.remembers_deflection and liner is not None:
+            # at a line inside the cells a vertex is full from another pressure on than in the film with cavities
+            for repeats in range(1 if s.oil_line is None else 3):
+                if repeats == 0 or self.evaluate(motion, new).film is not None:
+                    new = replace(new, deflection=liner.deflection)
         return new
 
     def next_history(self, film: SolvedFilm) -> History | None:

@@ -314,9 +314,9 @@ def steady_spherical(
         Angular velocity of the ball as seen from the socket.
 
     The film is a steady one. With `ElrodAdams` and a velocity it is the film at the instant at which a ball at rest
-    begins to move: its oil content is that of the steady film at rest, and is constant in ``tangent``. Without a
-    velocity, this holds for the velocity's columns of ``tangent``; the others are derivatives of steady films. With
-    ``thermal`` the film has the temperature at which heat and cooling are in balance.
+    begins to move: its oil content is that of the steady film at rest, and is constant in ``tangent``. At rest
+    this holds for the columns of ``tangent`` that belong to velocities; the others are derivatives of steady films.
+    With ``thermal`` the film has the temperature at which heat and cooling are in balance.
 
     Returns
     -------

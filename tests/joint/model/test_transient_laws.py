@@ -147,7 +147,7 @@ def test_newton_comes_back_from_a_squeeze_that_no_pressure_carries(closure, law,
 @pytest.mark.parametrize("in_cells", (False, True))
 @pytest.mark.parametrize("velocity", (0.0, 0.004, -0.02))
 def test_an_elastic_liner_does_not_jump_at_the_start(density, in_cells, velocity):
-    """At an instant pressures and deflections are those of the state before: the loss is that of sliding and squeeze,
+    """Pressures and deflections at an instant are those of the state before: the loss is that of sliding and squeeze,
     and the liner stores a small part of it. A prescribed pressure compresses the oil beside it."""
     bearing = ehd.JournalBearing(
         journal_radius=0.025,
