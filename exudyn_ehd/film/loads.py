@@ -171,14 +171,17 @@ def end_flows(
     cavity's. It ends where its pressure parabola does, before the next vertex. For q < B its flow is
     ``2 sqrt(q B)``. At q = B, where the line reaches the next vertex, this is equal to q + B, with the same slope.
     """
-    ends, beside, links, outward = [0, -1], [1, -2], [0, -2], np.array([-1.0, 1.0])
+    m = P.shape[1]
+    # first and last column; those beside them, one and the same of three; links to them
+    ends, beside, links = slice(None, None, m - 1), slice(1, -1, max(m - 3, 1)), slice(0, -1, m - 2)
+    around = fx[:, ends]
     q = kz[:, links] * (P[:, ends] - P[:, beside])
-    B = fx[:, ends] - np.roll(fx[:, ends], 1, axis=0)
+    B = around - np.concatenate((around[-1:], around[:-1]))
     if squeeze:
-        B = B + H_t[:, ends] * np.outer(width_x, width_z[ends])
+        B = B + H_t[:, ends] * (width_x[:, None] * width_z[ends])
     reaches = full[:, beside] | ((q > 0.0) & (q >= B))
     taken = np.where(reaches, q + B, np.where(q > 0.0, 2.0 * np.sqrt(np.maximum(q * B, 0.0)), q))
-    lower, upper = (outward * fz[:, links] - taken).sum(axis=0).tolist()
+    lower, upper = (fz[:, links] * (-1.0, 1.0) - taken).sum(axis=0).tolist()
     return lower, upper
 
 
