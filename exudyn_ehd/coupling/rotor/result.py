@@ -13,6 +13,8 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import INITIAL, Index, NodeIndex, ObjectIndex, require_system
 from exudyn_ehd.coupling.rotor.vibrations import vibrations, vibrations_in_films_that_follow
+from exudyn_ehd.coupling.run.restart import settle
+from exudyn_ehd.coupling.run.solve import joints_of
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.pictures.records import Target
 from exudyn_ehd.status import FilmError, InputError, require_number
@@ -289,7 +291,8 @@ class RotorResult:
     def place(self, mbs: exu.MainSystem, speed: float) -> None:
         """Let the next run of the system start in the equilibrium of one of the speeds.
 
-        Sets Exudyn's initial coordinates and rates.
+        Sets Exudyn's initial coordinates and rates, and the memory of the films: oil content, temperature and
+        deflection of the steady films there.
 
         Parameters
         ----------
@@ -316,6 +319,9 @@ class RotorResult:
             )
         mbs.systemData.SetODE2Coordinates(self.coordinates[k].tolist(), INITIAL)
         mbs.systemData.SetODE2Coordinates_t(self.rates[k].tolist(), INITIAL)
+        for joint in joints_of(mbs):
+            if joint.element.model.remembers:
+                settle(mbs, joint.element)
 
     def plot_campbell(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Campbell diagram: frequencies over the speed, coloured by the sense of whirl; crosses mark growth."""

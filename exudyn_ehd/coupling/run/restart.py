@@ -258,27 +258,29 @@ def place(
         rates[where] = 0.0
     mbs.systemData.SetODE2Coordinates(coordinates.tolist(), INITIAL)
     mbs.systemData.SetODE2Coordinates_t(rates.tolist(), INITIAL)
-    at_rest = motion.copy()
-    at_rest[:2], at_rest[4:8] = result.position, 0.0
-    memory = _memory(element.model, at_rest, result, element.faces)
-    element.steps.resume(float(mbs.systemData.GetTime(INITIAL)), memory)
+    settle(mbs, element)
     return result
 
 
+def settle(mbs: exu.MainSystem, element: FilmElement) -> None:
+    """Let the next run start from the initial state with the memory of the steady film there."""
+    motion, memory = element.motion(mbs, INITIAL), None
+    motion[4:8] = motion[(MOTION_SIZE + motion.size) // 2 :] = 0.0
+    if element.model.remembers:
+        place = None if element.faces is None else np.append(motion, element.collars.motion_of(*element.frames)[-1])
+        memory = _memory(element.model, motion, place, element.faces)
+    element.steps.resume(float(mbs.systemData.GetTime(INITIAL)), memory)
+
+
 def _memory(
-    model: JointModel, motion: np.ndarray, result: EquilibriumResult, faces: ThrustModel | None
+    model: JointModel, motion: np.ndarray, place: np.ndarray | None, faces: ThrustModel | None
 ) -> History | None:
-    """Return the memory of the steady film at ``motion`` (10,); None without effects that need memory."""
-    if not model.remembers:
-        return None
+    """Memory of the steady film at a motion of the film; ``place`` (11,): that of the faces."""
     assert isinstance(model, BearingModel)
-    bore = result.film.bore_coordinates
-    whole = motion if bore is None else np.concatenate((motion, bore, np.zeros_like(bore)))
-    first = model.initial_history(whole)
-    place = motion if result.film.faces is None else np.append(motion, result.film.faces.axial_position)
-    settled = settled_history(model, whole if faces is None else place, faces=faces)
-    evaluation = model.evaluate(whole, settled)
-    if faces is not None:
+    first = model.initial_history(motion)
+    settled = settled_history(model, motion if place is None else place, faces=faces)
+    evaluation = model.evaluate(motion, settled)
+    if faces is not None and place is not None:
         evaluation.heat_with(faces.evaluate(place, seen_by_faces(evaluation.film, model.effects.thermal)).heat)
     if first is None or evaluation.status is not Status.CONVERGED:
         return first

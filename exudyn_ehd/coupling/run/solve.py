@@ -203,6 +203,9 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
     A film without relative speed, a journal's spin and its place along the axis have no stiffness of their own: give
     speeds by initial velocities, and hold what is free by supports, springs or constraints.
 
+    Films are steady ones, but heat is not in balance: a film with ``thermal`` keeps its initial temperature, and a
+    warning says so.
+
     Parameters
     ----------
     mbs : exudyn.MainSystem
@@ -234,6 +237,13 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
     500
     """
     require_run("SolveStatic", mbs, simulationSettings)
+    if heated := [joint.name for joint in joints_of(mbs) if joint.element.model.bearing.thermal is not None]:
+        warn_user(
+            f"SolveStatic: the film of joint '{heated[0]}' keeps its initial temperature, as a static solution has no "
+            "balance of heat; give its thermal=... the initial_temperature of ehd.equilibrium(...).film.temperature, "
+            "or take SolveEquilibrium.",
+            UserWarning,
+        )
     with own_errors(mbs, "SolveStatic"):
         return bool(mbs.SolveStatic(simulationSettings, **options | {"storeSolver": True}))
 

@@ -148,6 +148,7 @@ def test_stored_memory_is_taken_at_any_time():
     assert joint.history.film_temperature[0] == pytest.approx(state.memory.temperature, rel=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore:SolveStatic.*balance of heat:UserWarning")
 @pytest.mark.parametrize("what", EFFECTS)
 def test_a_state_stored_behind_a_static_solve_holds_the_film_of_the_run(what):
     """The static solve fails, since the load has no equilibrium at rest; films are steady in it and learn nothing."""

@@ -395,6 +395,24 @@ def test_unbalances_add_up_and_turn_with_the_shaft(reference):
     np.testing.assert_allclose(one.amplitude(body), np.abs(forward) + np.abs(backward))
 
 
+@pytest.mark.parametrize("options", MEMORIES.values(), ids=list(MEMORIES))
+def test_a_run_begins_in_the_equilibrium_with_the_films_memory(options):
+    """Forces and losses of the first rows are those of the result, and the journals stay."""
+    run, _, joints = shaft(place=0.05, film=bearing(**options))
+    result = ehd.SolveEquilibrium(run, SPEED)
+    result.place(run, SPEED)
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 1e-4, 4
+    settings.solution.file.write = False
+    ehd.ConfigureSolver(settings)
+    ehd.SolveDynamic(run, settings)
+    for k, joint in enumerate(joints):
+        history, force = joint.history, result.wrench[0, k, :3]
+        np.testing.assert_allclose(history.force, [force] * 5, rtol=0, atol=2e-4 * np.linalg.norm(force))
+        np.testing.assert_allclose(history.power_loss, result.power_loss[0, k], rtol=1e-3)
+        np.testing.assert_allclose(history.eccentricity, [result.motion[0, k, :2]] * 5, rtol=0, atol=1e-4 * CLEARANCE)
+
+
 def test_the_state_of_a_run_and_its_history_stay_as_they_are():
     mbs, _, joints = shaft(place=0.05)
     ehd.SolveEquilibrium(mbs, SPEED).place(mbs, SPEED)
