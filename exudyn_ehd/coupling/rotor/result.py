@@ -320,8 +320,7 @@ class RotorResult:
         mbs.systemData.SetODE2Coordinates(self.coordinates[k].tolist(), INITIAL)
         mbs.systemData.SetODE2Coordinates_t(self.rates[k].tolist(), INITIAL)
         for joint in joints_of(mbs):
-            if joint.element.model.remembers:
-                settle(mbs, joint.element)
+            settle(mbs, joint.element)
 
     def plot_campbell(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Campbell diagram: frequencies over the speed, coloured by the sense of whirl; crosses mark growth."""

@@ -15,7 +15,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling import exudyn_solvers
-from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, JointModel, Side, require_system
+from exudyn_ehd.coupling.contract import CURRENT, INITIAL, START_OF_STEP, Side, require_system
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
@@ -262,23 +262,28 @@ def place(
     return result
 
 
-def settle(mbs: exu.MainSystem, element: FilmElement) -> None:
-    """Let the next run start from the initial state with the memory of the steady film there."""
-    motion, memory = element.motion(mbs, INITIAL), None
-    motion[4:8] = motion[(MOTION_SIZE + motion.size) // 2 :] = 0.0
-    if element.model.remembers:
+def settle(mbs: exu.MainSystem, element: FilmElement, heated: bool = True) -> None:
+    """Let the next run start from the initial state with the memory of the steady film there.
+
+    ``heated``: the film has the temperature in balance with its heat, else its initial one.
+    """
+    model, memory = element.model, None
+    if not isinstance(model, BearingModel):
+        return
+    if model.remembers:
+        motion = element.motion(mbs, INITIAL)
+        motion[4:8] = motion[(MOTION_SIZE + motion.size) // 2 :] = 0.0
         place = None if element.faces is None else np.append(motion, element.collars.motion_of(*element.frames)[-1])
-        memory = _memory(element.model, motion, place, element.faces)
+        memory = _memory(model, motion, place, element.faces, heated)
     element.steps.resume(float(mbs.systemData.GetTime(INITIAL)), memory)
 
 
 def _memory(
-    model: JointModel, motion: np.ndarray, place: np.ndarray | None, faces: ThrustModel | None
+    model: BearingModel, motion: np.ndarray, place: np.ndarray | None, faces: ThrustModel | None, heated: bool
 ) -> History | None:
     """Memory of the steady film at a motion of the film; ``place`` (11,): that of the faces."""
-    assert isinstance(model, BearingModel)
     first = model.initial_history(motion)
-    settled = settled_history(model, motion if place is None else place, faces=faces)
+    settled = settled_history(model, motion if place is None else place, faces=faces) if heated else None
     evaluation = model.evaluate(motion, settled)
     if faces is not None and place is not None:
         evaluation.heat_with(faces.evaluate(place, seen_by_faces(evaluation.film, model.effects.thermal)).heat)

@@ -23,7 +23,7 @@ from exudyn_ehd.coupling.kinematics.relative import levers_of
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.newton import StartGuess, free_bushes, refuse
 from exudyn_ehd.coupling.run.periodic import Closing, LastCycle, UntilPeriodic, run_progress
-from exudyn_ehd.coupling.run.restart import SystemState, load_state
+from exudyn_ehd.coupling.run.restart import SystemState, load_state, settle
 from exudyn_ehd.coupling.run.step_size import steps_by_error
 from exudyn_ehd.status import EHDError, InputError, PlausibilityWarning, RunError, require_type, warn_user
 
@@ -204,7 +204,7 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
     speeds by initial velocities, and hold what is free by supports, springs or constraints.
 
     Films are steady ones, but heat is not in balance: a film with ``thermal`` keeps its initial temperature, and a
-    warning says so.
+    warning says so. With ``updateInitialValues=True`` the next run starts with the oil content of these films.
 
     Parameters
     ----------
@@ -240,12 +240,14 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
     if heated := [joint.name for joint in joints_of(mbs) if joint.element.model.bearing.thermal is not None]:
         warn_user(
             f"SolveStatic: the film of joint '{heated[0]}' keeps its initial temperature, as a static solution has no "
-            "balance of heat; give its thermal=... the initial_temperature of ehd.equilibrium(...).film.temperature, "
-            "or take SolveEquilibrium.",
+            "balance of heat; give thermal=... the initial_temperature that is in balance, or take SolveEquilibrium.",
             UserWarning,
         )
     with own_errors(mbs, "SolveStatic"):
-        return bool(mbs.SolveStatic(simulationSettings, **options | {"storeSolver": True}))
+        found = bool(mbs.SolveStatic(simulationSettings, **options | {"storeSolver": True}))
+    for joint in joints_of(mbs) if found and options.get("updateInitialValues") else ():
+        settle(mbs, joint.element, heated=False)
+    return found
 
 
 def _refuse_inactive(mbs: exu.MainSystem) -> None:
@@ -254,9 +256,8 @@ def _refuse_inactive(mbs: exu.MainSystem) -> None:
         if "Joint" in data["objectType"] and not data.get("activeConnector", True):
             raise InputError(
                 f"SolveDynamic: explicit solvers refuse constraints, also inactive ones like object {int(number)} "
-                f"'{data['name']}' "
-                "(ReplaceJoint switches joints off and leaves them in the model); take an implicit solver, or a model "
-                "without that joint and CreateLubricatedJoint."
+                f"'{data['name']}' (ReplaceJoint switches joints off and leaves them in the model); take an implicit "
+                "solver, or a model without that joint and CreateLubricatedJoint."
             )
 
 

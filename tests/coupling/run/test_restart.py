@@ -8,6 +8,7 @@ import exudyn.itemInterface as eii
 import numpy as np
 import pytest
 import scenes
+from exudyn.utilities import RigidBodyInertia
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.run.joint_state import digest
@@ -359,3 +360,43 @@ def test_stored_memory_is_checked(tmp_path):
                 ehd.SolveDynamic(mbs, settings(3, 6), restart=tmp_path / "bad.npz")
     ehd.SolveDynamic(mbs, settings(3, 6), restart=good)
     assert joint.history.time.size == 7
+
+
+@pytest.mark.parametrize("thermal", [None, ehd.LumpedThermal(supply_temperature=313.15)], ids=("isothermal", "heated"))
+@pytest.mark.filterwarnings("ignore:SolveStatic.*balance of heat:UserWarning")
+def test_a_run_after_a_static_solution_starts_with_its_film(thermal):
+    """Oil content and temperature of the static film: the journal stays where it is, but for the warming."""
+    warm = ehd.ReynoldsTemperature(point=(313.15, 0.02), coefficient=0.03)
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025,
+        length=0.03,
+        radial_clearance=30e-6,
+        film=ehd.FiniteLength(n_theta=48, n_z=6),
+        lubricant=ehd.Lubricant(temperature_law=warm) if thermal else ehd.Lubricant(viscosity=0.02),
+        cavitation=ehd.ElrodAdams(cavity_pressure=-1e5),
+        thermal=thermal,
+    )
+    mbs = scenes.new_system()
+    ground = mbs.CreateGround()
+    # heavy about its axis, so that the spring hardly changes the spin in the run
+    inertia = RigidBodyInertia(mass=2.0, inertiaTensor=np.diag([1e4] * 3))
+    shaft = mbs.CreateRigidBody(
+        inertia=inertia, initialAngularVelocity=[0, 0, 300.0], nodeType=exu.NodeType.RotationRxyz
+    )
+    # the spin has no stiffness of its own
+    places = [
+        mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=node, coordinate=k))
+        for node, k in ((mbs.AddNode(eii.NodePointGround()), 0), (mbs.GetObject(shaft)["nodeNumber"], 5))
+    ]
+    mbs.AddObject(eii.CoordinateSpringDamper(markerNumbers=places, stiffness=1e5))
+    mbs.CreateForce(itemNumber=shaft, loadVector=[0, -2000.0, 0])
+    joint = ehd.CreateLubricatedJoint(
+        mbs, "main", [ground, shaft], [0, 0, 0], [0, 0, 1], bearing, axial=ehd.Held(), tilt=ehd.Held()
+    )
+    mbs.Assemble()
+    settings = ehd.ConfigureSolver(scenes.settings(1e-5, 5))
+    ehd.SolveStatic(mbs, settings, updateInitialValues=True)
+    still = joint.history
+    ehd.SolveDynamic(mbs, settings)
+    np.testing.assert_allclose(joint.history.force[:, :2], [[0.0, 2000.0]] * 6, rtol=0, atol=2.0)
+    np.testing.assert_allclose(joint.history.power_loss, still.power_loss[-1], rtol=1e-3)
