@@ -244,10 +244,12 @@ class BearingModel:
         wear = None if effects.wear is None else effects.wear.field(None).copy()
         new = replace(new, void=void, mass=mass, outflow=outflow, wear=wear, pockets=s.pockets if found else None)
         if found and self.remembers_deflection and liner is not None:
-            # at a line inside the cells a vertex is full from another pressure on than in the film with cavities
-            for repeats in range(1 if s.oil_line is None else 3):
-                if repeats == 0 or self.evaluate(motion, new).film is not None:
-                    new = replace(new, deflection=liner.deflection)
+            new = replace(new, deflection=liner.deflection)
+            # the pressures of the full film, and the compressed oil under them, where these are not the film's above
+            for _ in range(2 if s.oil_line or (remembers and s.law) else 0):
+                if self.evaluate(motion, new).film is not None:
+                    void, mass = s.stored(None, 0.0)
+                    new = replace(new, deflection=liner.deflection, void=void, mass=mass)
         return new
 
     def next_history(self, film: SolvedFilm) -> History | None:
