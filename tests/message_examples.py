@@ -1025,6 +1025,9 @@ mbs.SetNodeParameter(0, "initialCoordinates", [0, -2e-6, 0, 0, 0, 0]); mbs.Assem
 
 ehd.SolveStatic(mbs, settings)
 
+mbs, shaft, joint = joined(oily)
+ehd.SolveDynamic(mbs, settings, stepControl=ehd.StepControl(error=0.02))
+
 mbs, shaft, joint = joined(dataclasses.replace(bearing, thermal=ehd.LumpedThermal(supply_temperature=313.0)))
 ehd.SolveStatic(mbs, settings)
 

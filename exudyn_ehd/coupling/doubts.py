@@ -77,7 +77,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Side
 from exudyn_ehd.coupling.exudyn_solvers import USUAL_RADIUS, Solver
 from exudyn_ehd.coupling.kinematics.relative import eccentricity_ratios, levers_of
-from exudyn_ehd.coupling.record.history import JointHistory, error_of_pockets
+from exudyn_ehd.coupling.record.history import JointHistory, error_of_pockets, unseen_errors
 from exudyn_ehd.joint.audit.findings import LIMITS
 from exudyn_ehd.joint.audit.resolution import FADING, Resolution, coarse_film, is_judged, resolution
 from exudyn_ehd.joint.audit.samples import RING_COMPLIANCE, adiabatic_rise, time_mean
@@ -116,8 +116,7 @@ KICK, KICK_WEIGHT, KICK_LIMIT = 1.1, 7, 70
 # Loss of angular momentum in a turn above which a run warns; turn of a step over 1 - rho, rad, above which vibrations
 # may grow; turn of a step, rad, below which vibrations are not assumed to grow.
 LOST, GROWING, LEAST_TURN = 0.01, 0.8, 2.0 * math.pi / 200
-# Spectral radius above which a run warns: alternating velocities then decay too slowly, see above. A smaller radius
-# damps whirl more.
+# Spectral radius above which a run warns: alternating velocities decay too slowly. Smaller ones damp whirl more.
 LARGEST_RADIUS = 0.9
 
 
@@ -294,6 +293,7 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, reasons: Ite
             f", error of the time steps {100.0 * error:.0f} % of the minimum film thickness at {at:.6g} s: take "
             f"{enough_steps(time, h.motion[:, 8], h.step_error, h.step_count)}"
         )
+    text += f", without an estimate of errors by {unseen}" if (unseen := unseen_errors(bearing)) else ""
     error, k = error_of_pockets(bearing, history)
     if error > LIMITS["time step"].value:
         share = f"{100.0 * error:.0f} % of the highest one in the step to {time[k]:.6g} s"

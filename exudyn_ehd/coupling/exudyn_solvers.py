@@ -276,7 +276,8 @@ class StepControl:
         step (or over the contact's range, if that is larger); the same for the end faces; 0.01 to 1.
     error : float or None, default None
         Of a run: error of the gap to aim at, over the minimum film thickness; 1e-4 to 0.5. The gaps of end faces do not
-        count: their films have no estimate.
+        count: their films have no estimate. Nor do errors by the memory of films with `ElrodAdams` or `FilmEnergy`
+        count, as a warning says: `recommend_steps` measures them.
 
     Examples
     --------

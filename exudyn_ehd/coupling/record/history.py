@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
+from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.joint.audit.samples import RecordedSteps
 from exudyn_ehd.joint.step_error import BALL, LOAD_COLUMNS, FilmLoad, recorded_entries
 from exudyn_ehd.pictures.mixins import HistoryPictures
@@ -442,3 +443,13 @@ def error_of_pockets(bearing: object, history: JointHistory) -> tuple[float, int
     highest = max(float(np.abs(pressures).max()), 1e-300)
     k = int(errors.argmax())
     return float(errors[k]) / highest, k + 2
+
+
+def unseen_errors(bearing: object) -> str:
+    """Parts of a film's memory, in words, whose errors by the time steps are not estimated; empty without them.
+
+    These errors are of first order in the step. With steps of some degrees they may exceed the estimated ones by far.
+    """
+    closure, thermal = getattr(bearing, "cavitation", None), getattr(bearing, "thermal", None)
+    found = {"oil content": getattr(closure, "conserves_mass", False), "temperatures": isinstance(thermal, FilmEnergy)}
+    return " and ".join(name for name, remembers in found.items() if remembers)

@@ -3,7 +3,9 @@
 A cycle is compared with the one before at the same phases. The difference of two successive cycles is smaller than the
 difference from the limit: if differences d_1, d_2, ... shrink by a factor q = d_k / d_(k-1), the remaining difference
 is d q / (1 - q). For a film whose temperature approaches its limit by 1 % per cycle, it is 99 times the last
-difference. So a run continues until both are small.
+difference. So a run continues until both are small. Orbit and temperatures have differences of their own, since an
+orbit settles in a few cycles while its film warms up in hundreds. Of the last two factors q the larger one counts: at
+first a fast change hides a slow one.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
+from itertools import pairwise
 from typing import ClassVar
 
 import exudyn as exu
@@ -27,9 +30,11 @@ from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.progress import Progress, is_shown
 from exudyn_ehd.status import POSITIVE, ROUNDING, Checked, InputError, RunError, require_number
 
-# Upper bound of the remaining difference over the last one, also for differences that do not shrink, such as round-off.
-# Larger: runs with slow changes last longer.
-MOST_LEFT = 100.0
+# Compared quantities, with upper bounds of the remaining difference over the last one, also for differences that do not
+# shrink, such as round-off. Larger: runs with slow changes last longer.
+MOST_LEFT = {"orbit": 100.0} | dict.fromkeys(
+    ("film_temperature", "sump_temperature", "bush_temperature", "journal_temperature"), 1000.0
+)
 # Lower bound, K, of the temperature rise over which changes of the temperature are measured.
 SMALLEST_RISE = 1.0
 
@@ -48,8 +53,10 @@ class UntilPeriodic(Checked):
     tolerance : float, default 0.01
         Largest difference of the last cycle from the cycle before it, and largest estimated difference from the limit
         that the cycles approach; 1e-6 to 0.5. Differences of the journal's axis at both ends of the bearing, and of the
-        journal's place between its thrust faces, are over the radial clearance. Differences of the film's mean
-        temperature are over its rise since the start of the run, at least 1 K.
+        journal's place between its thrust faces, are over the radial clearance. Differences of the temperatures of
+        film, sump and walls are over their rise since the start of the run, at least 1 K. What takes more than a
+        thousand cycles to warm up may still be some per cent off: start it at its final temperature, or give it less
+        heat capacity, which does not change the limit.
 
     Examples
     --------
@@ -150,6 +157,8 @@ class Closing:
         self.aim, self.begin, self.last = aim, run.startTime, run.startTime
         self.changes: list[float] = []
         self.left = math.inf
+        # last changes of every quantity of every joint
+        self._past: dict[tuple[str, str], list[float]] = {}
 
     def after_step(self, own: Callable[..., object], mbs: exu.MainSystem, time: float) -> bool:
         """Return whether the run goes on after the step to ``time``; the user's function is called first."""
@@ -175,11 +184,13 @@ class Closing:
         if self.closed or time < self.begin + (cycles - ROUNDING) * period:
             return
         end = self.begin + cycles * period
-        histories = [steps.history(mbs, complete=complete) for steps in self.films.values()]
-        change = max(_change(history, self.begin, end, period) for history in histories)
-        quotient = change / self.changes[-1] if self.changes and self.changes[-1] > 0.0 else 1.0
-        self.left = change * (quotient / (1.0 - quotient) if quotient < MOST_LEFT / (1.0 + MOST_LEFT) else MOST_LEFT)
-        self.changes.append(change)
+        self.left, largest = 0.0, 0.0
+        for name, steps in self.films.items():
+            for what, change in _changes(steps.history(mbs, complete=complete), self.begin, end, period).items():
+                past = self._past[name, what] = [*self._past.get((name, what), [])[-2:], change]
+                self.left = max(self.left, _left(past, MOST_LEFT[what]))
+                largest = max(largest, change)
+        self.changes.append(largest)
 
     def last_cycle(self, mbs: exu.MainSystem) -> LastCycle:
         """Return the last cycle, after the run.
@@ -212,11 +223,18 @@ class Closing:
         )
 
 
-def _change(history: JointHistory, begin: float, end: float, period: float) -> float:
-    """Largest change of an orbit from the previous cycle to the cycle that ends at ``end``."""
+def _left(changes: Sequence[float], most: float) -> float:
+    """Difference from the limit of cycles with these last changes, up to three; at most ``most`` times the last one."""
+    quotients = [b / a if a > 0.0 else 1.0 for a, b in pairwise(changes)] + [1.0] * (3 - len(changes))
+    slowest = max(quotients)
+    return changes[-1] * (slowest / (1.0 - slowest) if slowest < most / (1.0 + most) else most)
+
+
+def _changes(history: JointHistory, begin: float, end: float, period: float) -> dict[str, float]:
+    """Largest changes of an orbit and of temperatures from the previous cycle to the cycle that ends at ``end``."""
     last = history.between(end - period, end)
     if last.time.size < 2:
-        return math.inf
+        return {"orbit": math.inf}
     before = np.maximum(last.time - period, history.time[0])
     orbit = scipy.interpolate.CubicHermiteSpline(history.time, history.motion[:, :4], history.motion[:, 4:8])
     moved = last.motion[:, :4] - orbit(before)
@@ -225,13 +243,13 @@ def _change(history: JointHistory, begin: float, end: float, period: float) -> f
     place = history.axial_position
     if np.isfinite(place).all():
         ends.append(last.axial_position - np.interp(before, history.time, place))
-    change = float(np.abs(ends).max()) / history.radial_clearance
-    warm = history.film_temperature
-    if not np.isfinite(warm).all():
-        return change
-    first = float(np.interp(begin, history.time, warm))
-    rise = max(float(np.abs(last.film_temperature - first).max()), SMALLEST_RISE)
-    return max(change, float(np.abs(last.film_temperature - np.interp(before, history.time, warm)).max()) / rise)
+    out = {"orbit": float(np.abs(ends).max()) / history.radial_clearance}
+    for name in [*MOST_LEFT][1:]:
+        warm, now = getattr(history, name), getattr(last, name)
+        if np.isfinite(warm).all():
+            rise = max(float(np.abs(now - np.interp(begin, history.time, warm)).max()), SMALLEST_RISE)
+            out[name] = float(np.abs(now - np.interp(before, history.time, warm)).max()) / rise
+    return out
 
 
 @contextmanager

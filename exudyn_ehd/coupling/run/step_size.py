@@ -29,9 +29,10 @@ import numpy as np
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.exudyn_solvers import hooked
+from exudyn_ehd.coupling.record.history import unseen_errors
 from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.step_error import REFUSED, SMALLEST_GAP_SHARE, FilmLoad, next_error, no_error
-from exudyn_ehd.status import SMALL, Status
+from exudyn_ehd.status import SMALL, Status, warn_user
 
 # First and largest step, over the step of the settings.
 FIRST, LARGEST = 0.125, 4.0
@@ -149,6 +150,13 @@ class StepSize:
         # joints with nothing but faces have no estimate
         known = (film for film in films if getattr(film.model.bearing, "thrust", None) is not film.model.bearing)
         self.joints = [_JointError(film, error) for film in known]
+        for film in films:
+            if unseen := unseen_errors(film.model.bearing):
+                warn_user(
+                    f"StepControl.error: of joint '{film.failures.name}' errors by {unseen} are not estimated, and may "
+                    "exceed the error asked for by far; take equal steps, as many as ehd.recommend_steps(...) says.",
+                    UserWarning,
+                )
         self.periods = [solution.file.writePeriod] if solution.file.write else []
         self.periods += [solution.sensors.writePeriod] if sensors else []
         self.beyond = 2.0 * run.discontinuous.iterationTolerance

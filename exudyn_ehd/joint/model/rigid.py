@@ -232,7 +232,11 @@ class BearingModel:
         self.solver.forget()
 
     def initial_history(self, motion: np.ndarray) -> History | None:
-        """History of a flooded bearing (every gap full of oil) at this motion; None without a memory."""
+        """History of a flooded bearing (every gap full of oil) at this motion; None without a memory.
+
+        An elastic liner is deflected as under the steady film. Where the full film has other pressures, in front of
+        lines inside the cells, or compressed oil, its own deflection and oil content replace those.
+        """
         if not self.remembers:
             return None
         self.parts.evaluations += 1
@@ -245,7 +249,6 @@ class BearingModel:
         new = replace(new, void=void, mass=mass, outflow=outflow, wear=wear, pockets=s.pockets if found else None)
         if found and self.remembers_deflection and liner is not None:
             new = replace(new, deflection=liner.deflection)
-            # the pressures of the full film, and the compressed oil under them, where these are not the film's above
             for _ in range(2 if s.oil_line or (remembers and s.law) else 0):
                 if self.evaluate(motion, new).film is not None:
                     void, mass = s.stored(None, 0.0)
@@ -402,9 +405,8 @@ class BearingModel:
             p.liner.delta_old = past.deflection
         if self.solver.reservoirs is not None:
             self.solver.reservoirs.before = past.pockets
-        along = 0.5 * journal.axial_speed / self.grid.reference_length
-        cavity = float(self._prescribed[2])
-        return self.solver.advance(0.5 * journal.omega, along, cavity, past.void, past.outflow, step)
+        speeds = 0.5 * journal.omega, 0.5 * journal.axial_speed / self.grid.reference_length
+        return self.solver.advance(*speeds, float(self._prescribed[2]), past.void, past.outflow, step)
 
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0

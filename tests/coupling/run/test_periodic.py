@@ -1,5 +1,7 @@
 """Runs until orbits close: a driven journal under a load that turns and swells with a period."""
 
+import dataclasses
+
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
@@ -19,7 +21,7 @@ BEARING = ehd.JournalBearing(
 )
 
 
-def loaded(driven=True):
+def loaded(driven=True, bearing=BEARING):
     """Planar journal; without a drive its friction slows it down."""
     mbs = scenes.new_system()
     journal = mbs.CreateRigidBody(
@@ -35,7 +37,7 @@ def loaded(driven=True):
         items = (mbs.AddNode(eii.NodePointGround()), 0), (mbs.GetObject(journal)["nodeNumber"], 2)
         markers = [mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=n, coordinate=k)) for n, k in items]
         mbs.AddObject(eii.CoordinateConstraint(markerNumbers=markers, velocityLevel=True, offset=300.0))
-    joint = ehd.CreateLubricatedJoint(mbs, "main", [mbs.CreateGround(), journal], [0, 0, 0], [0, 0, 1], BEARING)
+    joint = ehd.CreateLubricatedJoint(mbs, "main", [mbs.CreateGround(), journal], [0, 0, 0], [0, 0, 1], bearing)
     mbs.Assemble()
     return mbs, joint
 
@@ -76,6 +78,28 @@ def test_orbits_that_do_not_close_are_an_error():
     mbs, _ = loaded(driven=False)
     with pytest.raises(ehd.RunError, match="left to the limit"):
         ehd.SolveDynamic(mbs, settings(6), until_periodic=ehd.UntilPeriodic(period=PERIOD))
+
+
+@pytest.mark.parametrize("sump", [False, True])
+def test_a_film_that_warms_up_in_thousands_of_cycles_has_not_closed(sump):
+    """Orbits settle in four cycles, in which the film hardly warms up; small heat capacities reach the limit."""
+    law = ehd.ReynoldsTemperature(point=(313.15, 0.02), coefficient=0.03)
+    warm = {"lubricant": ehd.Lubricant(temperature_law=law)}
+
+    def heated(capacity):
+        tank = ehd.Sump(conductance=6.0, ambient=313.15, heat_capacity=capacity, initial_temperature=313.15)
+        thermal = {"supply_temperature": tank} if sump else {"supply_temperature": 313.15, "capacity": capacity}
+        return dataclasses.replace(BEARING, **warm, thermal=ehd.LumpedThermal(**thermal))
+
+    with pytest.raises(ehd.RunError, match="left to the limit"):
+        mbs, _ = loaded(bearing=heated(500.0))
+        ehd.SolveDynamic(mbs, settings(15), until_periodic=ehd.UntilPeriodic(period=PERIOD))
+    ends = []
+    for capacity in (0.1, 0.5):
+        mbs, _ = loaded(bearing=heated(capacity))
+        cycle = ehd.SolveDynamic(mbs, settings(150), until_periodic=ehd.UntilPeriodic(period=PERIOD))
+        ends.append(cycle.histories["main"].film_temperature.mean())
+    assert ends[0] > 316.0 and ends[1] == pytest.approx(ends[0], abs=0.02 * (ends[0] - 313.15))
 
 
 def test_what_can_not_be_meant_is_refused():

@@ -17,9 +17,8 @@ def scene(**options):
         journal_radius=0.025,
         length=0.025,
         radial_clearance=25e-6,
-        lubricant=ehd.Lubricant(viscosity=0.02),
         film=ehd.FiniteLength(n_theta=32, n_z=6),
-        **options,
+        **{"lubricant": ehd.Lubricant(viscosity=0.02)} | options,
     )
     mbs = scenes.new_system()
     journal = mbs.CreateRigidBody(
@@ -104,6 +103,7 @@ def test_steps_end_at_the_times_of_output(sparse):
     assert np.diff(joint.history.time).min() > 1e-6
 
 
+@pytest.mark.filterwarnings("ignore:StepControl.error.*oil content:UserWarning")
 def test_a_run_that_goes_on():
     """Restart from a state, with the record and the estimate of both parts."""
     mbs, joint, _ = scene(cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
@@ -145,3 +145,14 @@ def test_a_joint_refuses_what_is_of_a_run():
     mbs = scenes.new_system()
     with pytest.raises(ehd.InputError, match="of a whole run"):
         ehd.CreateLubricatedJoint(mbs, name="j", stepControl=CONTROL)
+
+
+@pytest.mark.parametrize("thermal", [False, True])
+def test_errors_that_no_estimate_contains_are_told(thermal):
+    """Once for a joint, before the run: those of the oil content and of temperatures follow from no accepted state."""
+    options = {"thermal": ehd.FilmEnergy(supply_temperature=313.0)} if thermal else {"cavitation": ehd.ElrodAdams()}
+    mbs, *_ = scene(lubricant=ehd.oil("ISO VG 32"), **options)
+    mbs.Assemble()
+    with pytest.warns(UserWarning, match="are not estimated") as told:
+        ehd.SolveDynamic(mbs, settings(0.001, 5), stepControl=CONTROL)
+    assert [str(warning.message).count("temperatures" if thermal else "oil content") for warning in told] == [1]
