@@ -1025,11 +1025,13 @@ mbs.SetNodeParameter(0, "initialCoordinates", [0, -2e-6, 0, 0, 0, 0]); mbs.Assem
 
 ehd.SolveStatic(mbs, settings)
 
-mbs, shaft, joint = joined(oily)
+mbs, shaft, joint = joined(ehd.JournalBearing(**plain, cavitation=ehd.ElrodAdams(cavity_pressure=-1e5)))
 ehd.SolveDynamic(mbs, settings, stepControl=ehd.StepControl(error=0.02))
 
-mbs, shaft, joint = joined(dataclasses.replace(bearing, thermal=ehd.LumpedThermal(supply_temperature=313.0)))
-ehd.SolveStatic(mbs, settings)
+heated = {"lubricant": ehd.oil("ISO VG 46"), "thermal": ehd.LumpedThermal(supply_temperature=313.0)}
+mbs, shaft, joint = joined(ehd.JournalBearing(**size, **heated))
+mbs.CreateGenericJoint(itemNumbers=[mbs.CreateGround(), shaft], position=[0, 0, 0], constrainedAxes=[0, 0, 1, 1, 1, 1])
+mbs.CreateForce(itemNumber=shaft, loadVector=[0, -500, 0]); mbs.Assemble(); ehd.SolveStatic(mbs, settings)
 
 ehd.SolveDynamicSparse(mbs, settings)
 
