@@ -1028,10 +1028,9 @@ ehd.SolveStatic(mbs, settings)
 mbs, shaft, joint = joined(ehd.JournalBearing(**plain, cavitation=ehd.ElrodAdams(cavity_pressure=-1e5)))
 ehd.SolveDynamic(mbs, settings, stepControl=ehd.StepControl(error=0.02))
 
-heated = {"lubricant": ehd.oil("ISO VG 46"), "thermal": ehd.LumpedThermal(supply_temperature=313.0)}
-mbs, shaft, joint = joined(ehd.JournalBearing(**size, **heated))
-mbs.CreateGenericJoint(itemNumbers=[mbs.CreateGround(), shaft], position=[0, 0, 0], constrainedAxes=[0, 0, 1, 1, 1, 1])
-mbs.CreateForce(itemNumber=shaft, loadVector=[0, -500, 0]); mbs.Assemble(); ehd.SolveStatic(mbs, settings)
+warm = ehd.JournalBearing(**size, lubricant=ehd.oil("ISO VG 46"), thermal=ehd.LumpedThermal(supply_temperature=313))
+mbs, shaft, joint = joined(warm); held = {"position": centre, "constrainedAxes": [0, 0, 1, 1, 1, 1]}
+mbs.CreateGenericJoint(itemNumbers=[mbs.CreateGround(), shaft], **held); mbs.Assemble(); ehd.SolveStatic(mbs, settings)
 
 ehd.SolveDynamicSparse(mbs, settings)
 
