@@ -234,8 +234,8 @@ class BearingModel:
     def initial_history(self, motion: np.ndarray) -> History | None:
         """History of a flooded bearing (every gap full of oil) at this motion; None without a memory.
 
-        An elastic liner is deflected as under the steady film. Where the full film has other pressures, in front of
-        lines inside the cells, or compressed oil, its own deflection and oil content replace those.
+        An elastic liner is deflected as under the steady film; with lines inside the cells, where a vertex is full from
+        another pressure on, as under the full film.
         """
         if not self.remembers:
             return None
@@ -249,10 +249,9 @@ class BearingModel:
         new = replace(new, void=void, mass=mass, outflow=outflow, wear=wear, pockets=s.pockets if found else None)
         if found and self.remembers_deflection and liner is not None:
             new = replace(new, deflection=liner.deflection)
-            for _ in range(2 if s.oil_line or (remembers and s.law) else 0):
+            for _ in range(2 if s.oil_line else 0):
                 if self.evaluate(motion, new).film is not None:
-                    void, mass = s.stored(None, 0.0)
-                    new = replace(new, deflection=liner.deflection, void=void, mass=mass)
+                    new = replace(new, deflection=liner.deflection)
         return new
 
     def next_history(self, film: SolvedFilm) -> History | None:

@@ -186,3 +186,16 @@ def test_a_velocity_changes_no_force_of_a_film_on_a_liner(in_cells, velocity):
     assert moves.force == pytest.approx(still.force, rel=2e-4)
     assert moves.friction_torque == pytest.approx(still.friction_torque, rel=2e-4)
     assert moves.power_loss == pytest.approx(still.power_loss, rel=0.5 * abs(velocity) + 1e-4)
+
+
+def test_a_shear_law_that_does_not_thin_changes_no_film_at_an_instant():
+    """Compressible oil at the start of a run, with a pressure at an end: the same film on the way of shear laws."""
+    size = {"journal_radius": 0.025, "length": 0.03, "radial_clearance": 30e-6, "end_pressures": (1e5, 3e4)}
+    found = []
+    for law in (None, ehd.CarreauShear(relaxation_time=1e-15, exponent=0.75)):
+        oil = ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson(), shear_law=law)
+        model = build_model(ehd.JournalBearing(**size, lubricant=oil, cavitation=ehd.ElrodAdams(cavity_pressure=-5e4)))
+        motion = np.array([1.2e-5, 0, 0, 0, 0.01, 0, 0, 0, 300.0, 0])
+        film = model.evaluate(motion, model.initial_history(motion), 0.0)
+        found.append(np.append(film.wrench, [film.quantities()[name] for name in ("power_loss", "leakage")]))
+    np.testing.assert_allclose(found[1], found[0], rtol=1e-6, atol=1e-9)
