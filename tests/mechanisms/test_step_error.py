@@ -151,8 +151,8 @@ def test_estimates_are_within_three_of_the_error_and_their_advice_does(name, ste
             assert true_error(run(name, told).history, reference(name)) < 0.05, told
 
 
-# Errors over those asked for. The steps of the big end hang on round-off: below 1.33 with kernels compiled in one order,
-# 1.51 in another.
+# Errors over those asked for. The steps of the big end hang on round-off: below 1.33 with kernels compiled in one
+# order, 1.51 in another.
 WITHIN = {"four-bar": 1.33, "slider-crank": 1.33, "big end": 1.6, "orbit": 1.33}
 
 
