@@ -43,9 +43,14 @@ SCENES = {
 }
 
 
-def run(name, steps, counts=None, **options_of_run):
-    """A run of a scene; ``counts`` takes the film's evaluations so far at each accepted state."""
+def run(name, steps, counts=None, round_off=0, **options_of_run):
+    """A run of a scene; ``counts`` takes the film's evaluations so far at each accepted state.
+
+    ``round_off``: number of thousand units of round-off by which the clearance of the big end is larger.
+    """
     make, options = SCENES[name]
+    if round_off:
+        options = {"radial_clearance": measured.big_end().bearing.radial_clearance * (1.0 + 3e-13 * round_off)}
     if "cavitation" in options:
         speed = 50.0 * math.pi
         (mbs, joint), end = four_bar(pin(options["cavitation"], film=FILM), speed), 4.0 * math.pi / speed
@@ -151,9 +156,14 @@ def test_estimates_are_within_three_of_the_error_and_their_advice_does(name, ste
             assert true_error(run(name, told).history, reference(name)) < 0.05, told
 
 
-# Errors over those asked for. The steps of the big end hang on round-off: below 1.33 with kernels compiled in one
-# order, 1.51 in another.
-WITHIN = {"four-bar": 1.33, "slider-crank": 1.33, "big end": 1.6, "orbit": 1.33}
+# Changes of the clearance by round-off with which a scene is run. The chosen steps of the big end hang on round-off: in
+# seven of eight runs at 2 %, errors are 0.76 to 1.12 of the one asked for, and 1.51 in the other one.
+ROUND_OFFS = {"big end": range(5)}
+
+
+def within(errors, error):
+    """Return whether the median error is within a third of what is asked, and the largest within 1.6 times."""
+    return np.median(errors) < 1.33 * error and max(errors) < 1.6 * error
 
 
 @pytest.mark.slow
@@ -167,13 +177,14 @@ WITHIN = {"four-bar": 1.33, "slider-crank": 1.33, "big end": 1.6, "orbit": 1.33}
     ],
 )
 def test_steps_by_their_error(name, usual, fixed, most):
-    """Errors within `WITHIN` of what is asked, at the cost of the best equal steps that were found by hand.
+    """Errors within a third of what is asked, at the cost of the best equal steps that were found by hand.
 
     Those hold 5 and 2 % with every larger number of steps, too.
     """
     for error, steps in zip((0.05, 0.02), fixed, strict=True):
-        joint, best = run(name, usual, stepControl=ehd.StepControl(error=error)), run(name, steps)
-        assert true_error(joint.history, reference(name)) < WITHIN[name] * error
+        control, best = ehd.StepControl(error=error), run(name, steps)
+        joint, *others = (run(name, usual, round_off=k, stepControl=control) for k in ROUND_OFFS.get(name, (0,)))
+        assert within([true_error(each.history, reference(name)) for each in (joint, *others)], error)
         assert joint.element.evaluations < most * best.element.evaluations
 
 
@@ -216,6 +227,9 @@ def test_steps_by_their_error_in_a_settled_cycle(name, usual, fixed):
     for error, steps in zip((0.05, 0.02), fixed, strict=True):
         _, best = late(steps)
         for guess in (usual // 2, usual, 2 * usual):
-            history, found = late(2 * (guess // 2), stepControl=ehd.StepControl(error=error))
-            assert true_error(history, reference(name), 0.5 * history.time[-1]) < WITHIN[name] * error
+            control, sizes = ehd.StepControl(error=error), ROUND_OFFS.get(name, (0,))
+            runs = [late(2 * (guess // 2), round_off=k, stepControl=control) for k in sizes]
+            half = [true_error(history, reference(name), 0.5 * history.time[-1]) for history, _ in runs]
+            assert within(half, error)
+            _, found = runs[0]
             assert found < 1.6 * best

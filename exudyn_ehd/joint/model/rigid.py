@@ -235,7 +235,7 @@ class BearingModel:
         """History of a flooded bearing (every gap full of oil) at this motion; None without a memory.
 
         An elastic liner is deflected as under the steady film; with lines inside the cells, where a vertex is full from
-        another pressure on, as under the full film.
+        another pressure on, as under the full film, which changes it twenty times less at every repetition.
         """
         if not self.remembers:
             return None

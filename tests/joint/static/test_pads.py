@@ -280,7 +280,8 @@ def test_no_unstable_position_without_a_word(seed):
             rest = ehd.equilibrium(pads, speed=SPEED, load=(force * np.sin(angle), -force * np.cos(angle)))
         except ehd.FilmError:
             return
-    assert told or slowly(rest).min() > 0.0
+    said = [str(warning.message) for warning in told]
+    assert any("rests unstably" in text or "no pad is loaded" in text for text in said) or slowly(rest).min() > 0.0
 
 
 @pytest.mark.slow
