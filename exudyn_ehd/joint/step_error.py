@@ -46,7 +46,7 @@ Omitted are: the first two steps, in which the rates still jump from the given i
 pulses within a step without `StepControl`, which no accepted state shows; oscillations that the trapezoidal rule does
 not damp; constraints, in M; and errors of the films' memory (cavities, heat, wear, compressible volumes of
 restrictors), which are of first order. The line at the end of a run gives the error of the pressures behind
-restrictors. With `ElrodAdams` the estimate was 0.07 to 0.9 of the error, with `FilmEnergy` 0.02 to 0.15.
+restrictors. With `ElrodAdams` the estimate was 0.04 to 0.9 of the error, with `FilmEnergy` 0.01 to 0.15.
 """
 
 from __future__ import annotations
