@@ -191,8 +191,8 @@ def apply_step(kind, nonlinearity, curves, order, count, dx, full, u, P):
     ----------
     nonlinearity : tuple
         Weight of a relative change of density or gap, where a change of u on a curve has the weight 1; these relative
-        changes (n, m) per unit of P; P at which the oil's law ends; fields whose third and fourth are p' and p'' of
-        the law; Pa per unit of P.
+        changes (n, m) per unit of P; P at which the oil's law ends; p' and p'' of the
+        law (2, n m); Pa per unit of P.
 
     Returns
     -------
@@ -228,8 +228,8 @@ def apply_step(kind, nonlinearity, curves, order, count, dx, full, u, P):
         if weight > 0.0 and sets[c]:
             nonlinear_change, at = max(nonlinear_change, weight * abs(relative_slopes[c] * change)), pressures[c]
             matrix_change = max(matrix_change, abs(relative_slopes[c] * change))
-            growth = scale * law[3, c] / law[2, c] * change
-            if law[3, c] > 0.0 and growth > 0.0 and at < end < np.inf:
+            growth = scale * law[1, c] / law[0, c] * change
+            if law[1, c] > 0.0 and growth > 0.0 and at < end < np.inf:
                 change *= -np.expm1(-min(growth, LARGEST_THICKENING)) / growth
             if (at < end) != (at + change < end):
                 change = (end if at < end else end * (1.0 - BOUND_TOLERANCE)) - at

@@ -8,12 +8,6 @@ The mass flow under pressure ``rho / mu grad p = grad q / mu_0`` is linear in
 ``q = integral of (rho / rho_0) / (mu / mu_0) dp``, which grows with p, so that conditions on the cavity hold in q as in
 p. Below ambient pressure ``q = (1 - exp(-k p)) / k``, k = alpha - a with the viscosity's coefficient alpha.
 
-Density at the vertices of a film. A vertex has nearly the same pressure in successive iterations and films, and looking
-up the law takes time. So ``known`` (9, size) stores the law at one transformed pressure q of every vertex: q, density
-ratio, s = dp/dq and its derivative, and the four further coefficients of the density's Taylor polynomial about q. The
-last entry is the reach, the change of q up to which the polynomial may replace the law. The compiler vectorises the
-loops that evaluate these polynomials.
-
 Symbols: P scaled transformed pressures (n, m), ``scale`` Pa per unit of P, ``floor`` the scaled pressure below which
 the density is constant.
 """
@@ -27,7 +21,6 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.compilation import FAST
 from exudyn_ehd.film.lubricant.pressure_viscosity import (
     LARGEST_PRESSURE,
     LawTable,
@@ -137,13 +130,14 @@ class DensityField:
     scale : float
         Pa per unit of the scaled pressure.
     rho, rho_P : (n, m) arrays
-        Density over that at ambient pressure, of the last solution, and its derivative when last factored.
+        Density over that at ambient pressure, of the last solution, and its derivative to the scaled pressure.
     """
 
     def __init__(self, law: CompressibleLaw, shape: tuple[int, int]) -> None:
         self.law, self.scale = law, 1.0
         self.rho, self.rho_P = np.ones((2, *shape))
-        self.known = np.full((9, self.rho.size), np.nan)
+        # s = dp/dq and ds/dq of the vertices
+        self.bends = np.zeros((2, self.rho.size))
         # whether Newton's steps may go beyond the end of the law
         self.crosses = False
 
@@ -153,7 +147,7 @@ class DensityField:
 
     def fields(self, floor: float) -> tuple[float, float, LawTable, np.ndarray, bool]:
         """Arguments of the kernels for this law; ``floor``: scaled pressure below which the density is constant."""
-        return self.scale, floor, self.law.kernel_table, self.known, self.crosses
+        return self.scale, floor, self.law.kernel_table, self.bends, self.crosses
 
 
 class CompressibleLaw(PressureTransform):
@@ -186,74 +180,17 @@ class CompressibleLaw(PressureTransform):
         return mu / rho, (mu_p * rho - mu * rho_p) / rho**2
 
 
-# Reach of a Taylor polynomial: relative change of dp/dq, and an eighth of that of the density's slope, up to which the
-# polynomial replaces the law. The error is then 1e-14 in the density and 1e-10 in its slope. A larger value gives
-# larger errors, a smaller one more look-ups.
-NEAR = 5e-4
-
-
 @njit(cache=True)
-def density_at(P, scale, floor, law, known, rho_out):
-    """Density ratio (n, m); looks up pressures beyond a polynomial's reach. Beyond the law's range: that at its end."""
-    x, rho = P.reshape(-1), rho_out.reshape(-1)
-    lowest, highest = max(floor, law.lowest / scale), law.highest / scale
-    if _ratio_near(x, scale, lowest, highest, known, rho) > 0.0:
-        look_up(x, scale, lowest, highest, law, 1.0, known)
-        _ratio_near(x, scale, lowest, highest, known, rho)
+def density_at(P, scale, floor, law, bends_out, rho_out, rho_P_out):
+    """Set the density ratio and its derivative to P (n, m), and s and ds/dq (2, size), at scaled pressures P.
 
-
-@njit(cache=True)
-def know_at(P, scale, floor, law, known):
-    """Store the law at the pressures (n, m) of a solution, so that tangents do not depend on the previous film."""
-    look_up(P.reshape(-1), scale, max(floor, law.lowest / scale), law.highest / scale, law, 0.0, known)
-
-
-# Where a law is linear, the reach of its polynomial is infinite.
-@njit(cache=True, error_model="numpy")
-def look_up(x, scale, lowest, highest, law, near, known):
-    """Store the law at every x (size,) that is farther from its stored pressure than ``near`` times the reach.
-
-    x is cut at ``lowest`` and ``highest``.
+    Below ``floor`` and beyond the law's range the density is that at the bound, with the derivative 0.
     """
-    for c in range(x.size):
-        q = _within(x[c], lowest, highest) * scale
-        if abs(q - known[0, c]) <= near * known[8, c] and (q > 0.0) == (known[0, c] > 0.0):
-            continue
-        _, rho, s, s_q, r1, r2, r3, r4 = law_at(q, law)
-        known[0, c], known[1, c], known[2, c], known[3, c] = q, rho, s, s_q
-        known[4, c], known[5, c], known[6, c], known[7, c] = r1, r2, r3, r4
-        known[8, c] = NEAR * min(s / abs(s_q), 4.0 * r1 / abs(r2))
-
-
-@njit(cache=True, inline="always")
-def _within(x, lowest, highest):
-    if not x > lowest:
-        return lowest
-    return x if x < highest else highest
-
-
-@njit(cache=True, fastmath=FAST)
-def _ratio_near(x, scale, lowest, highest, known, rho_out):
-    """Density ratio from the stored polynomials; returns the number of pressures beyond their reach."""
-    at, rho, r1, r2, r3, r4, reach = known[0], known[1], known[4], known[5], known[6], known[7], known[8]
-    far = 0.0
-    for c in range(rho_out.size):
-        y = x[c] if x[c] > lowest else lowest
-        q = (y if y < highest else highest) * scale
-        d = q - at[c]
-        far += 0.0 if (abs(d) <= reach[c]) & ((q > 0.0) == (at[c] > 0.0)) else 1.0
-        rho_out[c] = rho[c] + d * (r1[c] + d * (r2[c] + d * (r3[c] + d * r4[c])))
-    return far
-
-
-@njit(cache=True, fastmath=FAST)
-def density_slope_at(P, scale, floor, law, known, rho_P_out):
-    """Derivative (n, m) of the density ratio to P at the pressures of the last `density_at`; 0 where it is constant."""
-    x, slope = P.reshape(-1), rho_P_out.reshape(-1)
+    x, rho, slope = P.reshape(-1), rho_out.reshape(-1), rho_P_out.reshape(-1)
     lowest, highest = max(floor, law.lowest / scale), law.highest / scale
-    at, r1, r2, r3, r4 = known[0], known[4], known[5], known[6], known[7]
-    for c in range(slope.size):
-        y = x[c] if x[c] > lowest else lowest
-        d = (y if y < highest else highest) * scale - at[c]
-        by_pressure = scale * (r1[c] + d * (2.0 * r2[c] + d * (3.0 * r3[c] + 4.0 * d * r4[c])))
-        slope[c] = by_pressure if (x[c] >= lowest) & (x[c] < highest) else 0.0
+    at_lowest = law_at(lowest * scale, law)
+    for c in range(x.size):
+        # nan counts as below the floor
+        at = law_at(min(x[c], highest) * scale, law) if x[c] > lowest else at_lowest
+        _, rho[c], bends_out[0, c], bends_out[1, c], by_q = at
+        slope[c] = scale * by_q if lowest <= x[c] < highest else 0.0

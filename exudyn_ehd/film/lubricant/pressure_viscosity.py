@@ -259,14 +259,16 @@ class PressureTransform:
         widths = self._quadrature(self.p[:-1], self.p[1:])
         self.q = np.concatenate(([0.0], np.cumsum(widths)))
         slope, slope_p = self.slopes(self.p)
-        edges = np.linspace(0.0, self.q[-1], TABLE_INTERVALS + 1)
+        # so fine that the search in a part hardly takes a step
+        parts = 4 * TABLE_INTERVALS
+        edges = np.linspace(0.0, self.q[-1], parts + 1)
         self.kernel_table = LawTable(
             alpha,
             self.q,
             quintic(self.p, slope, slope * slope_p, widths),
             quintic(*self.densities(slope, slope_p), widths),
             np.clip(np.searchsorted(self.q, edges, side="right") - 1, 0, TABLE_INTERVALS - 1),
-            TABLE_INTERVALS / self.q[-1],
+            parts / self.q[-1],
             # below this q there is no pressure p
             -np.inf if alpha >= 0.0 else 0.999 / alpha,
             self.q[-1],
@@ -335,7 +337,7 @@ def law_fields(q, law, out):
             inside = False
             out[:, c] = np.nan
             continue
-        p, rho, s, s_q, rho_q, _, _, _ = law_at(min(q[c], law.highest), law)
+        p, rho, s, s_q, rho_q = law_at(min(q[c], law.highest), law)
         if not q[c] < law.highest:
             inside = False
             p, s, s_q, rho_q = p + BEYOND * (q[c] - law.highest), BEYOND, 0.0, 0.0
@@ -359,32 +361,26 @@ def interval_at(x, q_table, table, bucket, bucket_scale):
 
 @njit(cache=True, inline="always")
 def expand(table, low, t):
-    """Coefficients of Taylor's polynomial of fourth degree about t in an interval of a `quintic` spline."""
+    """Value, slope and half of the second derivative at t in an interval of a `quintic` spline."""
     c = table[low]
     w = c[0]
     return (
         c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * (c[5] + t * c[6])))),
         w * (c[2] + t * (2.0 * c[3] + t * (3.0 * c[4] + t * (4.0 * c[5] + t * 5.0 * c[6])))),
         w * w * (c[3] + t * (3.0 * c[4] + t * (6.0 * c[5] + t * 10.0 * c[6]))),
-        w * w * w * (c[4] + t * (4.0 * c[5] + t * 10.0 * c[6])),
-        w * w * w * w * (c[5] + t * 5.0 * c[6]),
     )
 
 
 @njit(cache=True, inline="always")
 def law_at(q, law):
-    """Pressure p, Pa, and density ratio at a transformed pressure q, Pa, within the law's range; s = dp/dq and ds/dq,
-    1/Pa; the first to fourth coefficient of Taylor's polynomial of the density about q."""
+    """Pressure p, Pa, and density ratio at a transformed pressure q, Pa, within the law's range; s = dp/dq, ds/dq and
+    the density's derivative to q, 1/Pa."""
     if q > 0.0:
         low, t = interval_at(q, law.q, law.table, law.bucket, law.bucket_scale)
-        p, s, half, _, _ = expand(law.table, low, t)
-        rho, r1, r2, r3, r4 = expand(law.ratio, low, t)
-        return p, rho, s, 2.0 * half, r1, r2, r3, r4
+        p, s, half = expand(law.table, low, t)
+        rho, rho_q, _ = expand(law.ratio, low, t)
+        return p, rho, s, 2.0 * half, rho_q
     a, k = law.a, law.exponent
     p, s = -np.log1p(-k * q) / k, 1.0 / (1.0 - k * q)
     rho = np.exp(a * p)
-    r1 = a * s * rho
-    r2 = (a + k) / 2.0 * s * r1
-    r3 = (a + 2.0 * k) / 3.0 * s * r2
-    r4 = (a + 3.0 * k) / 4.0 * s * r3
-    return p, rho, s, k * s * s, r1, r2, r3, r4
+    return p, rho, s, k * s * s, a * s * rho

@@ -241,7 +241,7 @@ class LinerFilm(WinklerElements):
 
     def factor_solution(self) -> None:
         """Refactor Newton's matrix at the last solution."""
-        w, fields = self.film.work, (self.kind, self.P, self.oil_fields, None, self.film_fields, self._seen)
+        w, fields = self.film.work, (self.kind, self.P, self.oil_fields, self.film_fields, self._seen)
         _, w.count, w.width = factor_film(*fields, self._response, w.matrix, w.active, (False, w.count, w.width))
 
     def finish(self) -> None:

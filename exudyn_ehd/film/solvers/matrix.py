@@ -13,7 +13,6 @@ from exudyn_ehd.film.banded.substitution import solve_ldl_one, solve_lu_one
 from exudyn_ehd.film.banded.workspace import add_corners, add_tangents, assemble, dense_band
 from exudyn_ehd.film.cavitation.oil_line import add_curve, curve_of
 from exudyn_ehd.film.cavitation.states import RUPTURE, add_sink_slopes
-from exudyn_ehd.film.lubricant.density import density_slope_at
 from exudyn_ehd.film.reynolds.balance import film_slopes, oil_links, terms_of
 from exudyn_ehd.film.solvers.winkler import find_slopes
 from exudyn_ehd.film.solvers.winkler_kernels import Rates, add_gap_slopes, load_of, slopes_of
@@ -41,20 +40,20 @@ def _add_line_slopes(fill, curve, terms, rho, slopes):
 
 
 @njit(cache=True, nogil=True)
-def factor_film(kind, P, oil, density, film, feedback, thin, matrix, full, size):
+def factor_film(kind, P, oil, film, feedback, thin, matrix, full, size):
     """Assemble and factor Newton's matrix of a film; returns (ok, number of unknowns, half-bandwidth).
 
     ``kind``: kind of film of `exudyn_ehd.film.cavitation.states`; P and ``full``: pressures and active set (n, m);
     ``size``: (whether the unknowns are numbered already, their number, half-bandwidth).
     """
-    return _factor(matrix[2], kind, P, oil, density, film, feedback, thin, matrix, full, size)
+    return _factor(matrix[2], kind, P, oil, film, feedback, thin, matrix, full, size)
 
 
 @njit(cache=True)
-def _factor(lower, kind, P, oil, density, film, feedback, thin, matrix, full, size):
+def _factor(lower, kind, P, oil, film, feedback, thin, matrix, full, size):
     if lower is None:
         return factor_symmetric(film, matrix, full, size)
-    return _factor_any(kind, P, oil, density, film, feedback, thin, matrix, full, size)
+    return _factor_any(kind, P, oil, film, feedback, thin, matrix, full, size)
 
 
 @njit(cache=True)
@@ -73,12 +72,9 @@ def factor_symmetric(film, matrix, full, size):
 
 
 @njit(cache=True)
-def _factor_any(kind, P, oil, density, film, feedback, thin, matrix, full, size):
+def _factor_any(kind, P, oil, film, feedback, thin, matrix, full, size):
     (fill, rho, rho_P), terms, (numbered, count, width) = oil, terms_of(film[0], film[1]), size
     order, number, lower, upper, inv_diag, slopes, relative_slopes = matrix
-    if density is not None:
-        scale, floor, law, known, _ = density
-        density_slope_at(P, scale, floor, law, known, rho_P)
     # Couette flows couple columns also where the pressure flow between them is dropped
     coupled, free, sets = oil_links(terms, full)
     filled, unknown = _full_vertices(fill, sets), full if kind == RUPTURE else free

@@ -280,14 +280,12 @@ def proceed(norm, gap, course, kind, pc, full, state, oil, density, film, feedba
         elements, relative_slopes = feedback[0], matrix[6]
         # rates at an instant: round-off of the difference of two deflections over a very short time
         stored = elements[3][1] * np.max(np.abs(elements[1][2]) * film[0][7])
-        nonlinearity = NONLINEAR_WEIGHT, relative_slopes, 1e300, elements[2].reshape(4, -1), 1.0
+        nonlinearity = NONLINEAR_WEIGHT, relative_slopes, 1e300, elements[2][2:].reshape(2, -1), 1.0
     tolerance = LOOSE_TOLERANCE if density is not None or (progress[2] and step >= TIGHT_STEPS) else RESIDUAL_TOLERANCE
     outcome, progress = _judge(film, kind, tolerance, stored, step + 1 == most, full, state, residual, progress)
     fresh = not progress[0]
     if outcome == GOES_ON and fresh:
-        ok, count, width = factor_film(
-            kind, P, oil, density, film, feedback, thin, matrix, full, (progress[1], count, width)
-        )
+        ok, count, width = factor_film(kind, P, oil, film, feedback, thin, matrix, full, (progress[1], count, width))
         outcome = GOES_ON if ok else LOST
     if outcome != GOES_ON:
         return outcome, (step, fresh, halvings, fraction, limit, count, width, progress)
@@ -318,8 +316,8 @@ def _nonlinearity(pc, oil, density, residual):
     """
     if density is None:
         return 0.0, residual, np.inf, residual, 1.0
-    scale, _, law, known, crosses = density
-    return NONLINEAR_WEIGHT, oil[2], np.inf if crosses else law.highest / scale - pc, known, scale
+    scale, _, law, bends, crosses = density
+    return NONLINEAR_WEIGHT, oil[2], np.inf if crosses else law.highest / scale - pc, bends, scale
 
 
 @njit(cache=True)
@@ -333,10 +331,10 @@ def _residual(lower, P, above, oil, density, film, ruptures, out):
         linear_residual((fields[0], fields[1], fields[10]), above, out)
         subtract_sink(film[3][0], film[3][6], -1.0, out)
     else:
-        fill, rho, _ = oil
+        fill, rho, rho_P = oil
         if density is not None:
-            scale, floor, law, known, _ = density
-            density_at(P, scale, floor, law, known, rho)
+            scale, floor, law, bends, _ = density
+            density_at(P, scale, floor, law, bends, rho, rho_P)
         film_balance(above, fill, rho, terms_of(film[0], film[1]), out)
         if ruptures:
             subtract_sink(film[3][0], film[3][6], 1.0, out)

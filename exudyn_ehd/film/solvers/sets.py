@@ -17,7 +17,6 @@ from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.closures import FilmSystem, has_unfed_row
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, extend_film, mean_in_cells, solve_linear
 from exudyn_ehd.film.cavitation.states import CLIPPED, OIL, RUPTURE
-from exudyn_ehd.film.lubricant.density import know_at
 from exudyn_ehd.film.reynolds.balance import store_content
 from exudyn_ehd.film.solvers.matrix import factor_film
 from exudyn_ehd.film.solvers.newton import solve_film, solve_rupturing
@@ -134,26 +133,22 @@ def _states_of(s: FilmSystem, work: Workspace) -> tuple[np.ndarray | None, ...]:
 
 def solve_system(s: FilmSystem, work: Workspace) -> tuple[bool, int]:
     """Solve by Newton's method, from the last film if ``work.warm``, else from a full film; returns (found, steps)."""
-    P = s.linear_pressure
     s.terms.late[:] = s.late
     ok, steps = work.take_end(
         *solve_film(
             s.kind, s.base, work.warm, work.size, work.active, _states_of(s, work), *_film_of(s, work),
-            (P, work.residual, work.unknowns, None), None,
+            (s.linear_pressure, work.residual, work.unknowns, None), None,
         )
     )  # fmt: skip
     work.warm = ok
-    if ok and s.density is not None:
-        scale, floor, law, known, _ = s.density.fields(s.floor)
-        know_at(P, scale, floor, law, known)
     return ok, steps
 
 
 def factor_solution(s: FilmSystem, work: Workspace) -> None:
     """Refactor Newton's matrix at the last solution of a film that is not linear."""
-    oil, density, film, feedback, matrix = _film_of(s, work)
+    oil, _, film, feedback, matrix = _film_of(s, work)
     full = work.active if s.kind >= RUPTURE else ~s.fixed
-    rest = oil, density, film, feedback, None, matrix, full, (False, work.count, work.width)
+    rest = oil, film, feedback, None, matrix, full, (False, work.count, work.width)
     _, work.count, work.width = factor_film(s.kind, s.linear_pressure, *rest)
 
 

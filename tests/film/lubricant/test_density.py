@@ -6,7 +6,7 @@ import pytest
 from scipy.integrate import quad
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.lubricant.density import CompressibleLaw, density_at, density_slope_at, look_up
+from exudyn_ehd.film.lubricant.density import CompressibleLaw, density_at
 from exudyn_ehd.film.lubricant.pressure_viscosity import law_at
 
 PRESSURES = np.array([0.0, 1e6, 1e8, 5e8, 1e9, 3e9])
@@ -84,11 +84,10 @@ def test_no_pressure_beyond_the_range():
         assert not law.inverse(np.full((1, 1), q), *out)
 
 
-def asked(P, scale, floor, law, known):
-    """Density ratio and its derivative from the kernels."""
+def asked(P, scale, floor, law):
+    """Density ratio and its derivative from the kernel."""
     rho, rho_P = np.empty_like(P), np.empty_like(P)
-    density_at(P, scale, floor, law.kernel_table, known, rho)
-    density_slope_at(P, scale, floor, law.kernel_table, known, rho_P)
+    density_at(P, scale, floor, law.kernel_table, np.empty((2, P.size)), rho, rho_P)
     return rho, rho_P
 
 
@@ -97,7 +96,7 @@ def test_weak_and_strong_tension():
     density = ehd.DowsonHigginson()
     law = CompressibleLaw(density, None)
     p = np.array([[-1e-3, -1e5, -1.65e6, -1e8, 0.0, 1e6]])
-    rho, rho_P = asked(law.transform(p), 1.0, -np.inf, law, np.full((9, p.size), np.nan))
+    rho, rho_P = asked(law.transform(p), 1.0, -np.inf, law)
     np.testing.assert_allclose(rho, density.ratio(p), rtol=2e-15)
     np.testing.assert_allclose(rho_P, density.ratio_slope(p) / density.ratio(p), rtol=1e-10)
 
@@ -135,7 +134,7 @@ def test_kernels_know_a_law_by_its_methods_alone(name, viscosity):
     ratio, s, _, ratio_q = of_q[:, 1:5].T.reshape(4, *p.shape)
     np.testing.assert_allclose(ratio, density.ratio(p), rtol=1e-12)  # that of q, where the oil is thick
     np.testing.assert_allclose(ratio_q / s, density.ratio_slope(p), rtol=1e-10)
-    rho, rho_P = asked(law.transform(p), 1.0, -np.inf, law, np.full((9, p.size), np.nan))
+    rho, rho_P = asked(law.transform(p), 1.0, -np.inf, law)
     inside, (_, s, *_) = law.fields(law.transform(p))
     assert inside
     np.testing.assert_allclose(rho, density.ratio(p), rtol=1e-12)  # that of q, where the oil is thick
@@ -148,52 +147,25 @@ def test_density_kernel_equals_its_twin():
     p = np.array([[-2e7, -1e5, 0.0, 3e6, 2e8, 5e8]])
     scale, floor = 1e5, -1.0
     P = law.transform(p) / scale
-    rho, rho_P = asked(P, scale, floor, law, np.full((9, P.size), np.nan))
+    rho, rho_P = asked(P, scale, floor, law)
     kept = np.maximum(p, float(-np.log1p(1e5 * law.alpha) / law.alpha))
     np.testing.assert_allclose(rho, density.ratio(kept), rtol=1e-12)  # the spline's
     assert rho_P[0, 0] == 0.0
     slope = density.ratio_slope(p) * np.exp(1e-8 * p) / density.ratio(p) * scale
     np.testing.assert_allclose(rho_P[0, 2:], slope[0, 2:], rtol=1e-10)
     beyond = np.full((1, 1), 2.0 * law.q[-1] / scale)
-    rho, rho_P = asked(beyond, scale, floor, law, np.full((9, 1), np.nan))
+    rho, rho_P = asked(beyond, scale, floor, law)
     assert rho[0, 0] == pytest.approx(float(density.ratio(law.largest_pressure)), rel=1e-6)  # at the range's end
     assert rho_P[0, 0] == 0.0
-
-
-@pytest.mark.parametrize("viscosity", [None, "barus", "roelands"])
-def test_what_is_known_near_by_serves_to_rounding(viscosity):
-    law = CompressibleLaw(ehd.DowsonHigginson(), None if viscosity is None else VISCOSITIES[viscosity])
-    q = law.transform(np.array([[-2e7, -5e6, 3e6, 5e7, 2e8, 5e8]]))
-    known = np.full((9, q.size), np.nan)
-    asked(q, 1.0, -np.inf, law, known)
-    at = known[0].copy()
-    moved = q + 0.9 * known[8]
-    rho, rho_P = asked(moved, 1.0, -np.inf, law, known)
-    np.testing.assert_array_equal(known[0], at)
-    fresh, fresh_P = asked(moved, 1.0, -np.inf, law, np.full((9, q.size), np.nan))
-    np.testing.assert_allclose(rho, fresh, rtol=1e-14)
-    np.testing.assert_allclose(rho_P, fresh_P, rtol=1e-10)
-    asked(moved + 2.0 * (moved - q), 1.0, -np.inf, law, known)
-    assert np.all(known[0] != at)
 
 
 @pytest.mark.parametrize(
     ("floor", "beyond"), [(1e6, 9e5), (-np.inf, 1e12)], ids=["below the floor", "beyond the range"]
 )
 def test_cut_pressures_have_a_density(floor, beyond):
-    law, P, known = CompressibleLaw(ehd.DowsonHigginson(), None), np.array([[2e6, beyond]]), np.full((9, 2), np.nan)
-    rho, rho_P = asked(P, 1.0, floor, law, known)
+    law, P = CompressibleLaw(ehd.DowsonHigginson(), None), np.array([[2e6, beyond]])
+    rho, rho_P = asked(P, 1.0, floor, law)
     assert np.all(rho > 1.0) and rho_P[0, 0] > 0.0 and rho_P[0, 1] == 0.0
-
-
-def test_nothing_is_known_across_ambient_pressure():
-    """The law's higher derivatives jump there."""
-    law = CompressibleLaw(ehd.DowsonHigginson(), None)
-    for start, end in ((1e3, -1e3), (0.0, 1e3), (-1e3, 1e3), (1e3, 0.0)):
-        known = np.full((9, 1), np.nan)
-        for x in (start, end):
-            look_up(np.array([x]), 1.0, -np.inf, np.inf, law.kernel_table, 1.0, known)
-            assert known[0, 0] == x
 
 
 @pytest.mark.parametrize("name", ["coefficient", "saturation"])
