@@ -7,8 +7,6 @@ links. Its storage and numbering are those of `exudyn_ehd.film.banded.factors`, 
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 from numba import njit
 from numba.extending import register_jitable
@@ -40,13 +38,15 @@ class Workspace:
 
     def __init__(self, n: int, m: int) -> None:
         size = n * m
-        self.shape = (n, m)
-        self.order = np.zeros(size, dtype=np.int64)
-        self.number = np.full((n, m), -1, dtype=np.int64)
-        self.upper = self._new_band()
-        self.inv_diag = np.zeros(size)
-        self.unknowns = np.zeros(size)
+        self.order, self.number = np.zeros(size, dtype=np.int64), np.full((n, m), -1, dtype=np.int64)
+        self.lower, self.upper = np.zeros((2, size, 2 * m + 2 + PAD))
+        self.inv_diag, self.unknowns = np.zeros((2, size))
         self.active = np.zeros((n, m), dtype=np.bool_)
+        self.u, self.above, self.residual, steep, *before = np.zeros((6, n, m))
+        self.slopes = np.zeros((5, size))
+        self.matrix = self.order, self.number, self.lower, self.upper, self.inv_diag, self.slopes, steep
+        self.symmetric = self.order, self.number, None, self.upper, self.inv_diag, None, None
+        self.before = before[0], np.zeros((n, m), dtype=np.bool_), before[1]
         self.warm = self.ready = self.exact = False
         self.count = 0
         self.width = 1
@@ -60,52 +60,6 @@ class Workspace:
         """Store the state of the factor after a solution; returns (found, steps)."""
         self.ready, self.exact, self.count, self.width = found, exact, count, width
         return found, steps
-
-    def _new_band(self) -> np.ndarray:
-        n, m = self.shape
-        return np.zeros((n * m, 2 * m + 2 + PAD))
-
-    @cached_property
-    def lower(self) -> np.ndarray:
-        """L of a non-symmetric film."""
-        return self._new_band()
-
-    @cached_property
-    def u(self) -> np.ndarray:
-        """Unknowns of a film that Newton's method solves."""
-        return np.zeros(self.shape)
-
-    @cached_property
-    def slopes(self) -> np.ndarray:
-        """Derivatives of the flows and the storage of a non-symmetric film."""
-        return np.zeros((5, self.order.size))
-
-    @cached_property
-    def above(self) -> np.ndarray:
-        """Pressures above the cavity's."""
-        return np.zeros(self.shape)
-
-    @cached_property
-    def matrix(self) -> tuple[np.ndarray, ...]:
-        """Argument ``matrix`` of `exudyn_ehd.film.solvers.newton` for a non-symmetric film."""
-        steep = np.zeros(self.shape)
-        return self.order, self.number, self.lower, self.upper, self.inv_diag, self.slopes, steep
-
-    @cached_property
-    def symmetric(self) -> tuple[np.ndarray | None, ...]:
-        """Argument ``matrix`` for a symmetric film."""
-        return self.order, self.number, None, self.upper, self.inv_diag, None, None
-
-    @cached_property
-    def before(self) -> tuple[np.ndarray, ...]:
-        """Last entry of ``places`` of `exudyn_ehd.film.solvers.newton`, where gaps follow the pressure."""
-        u, above = np.zeros((2, *self.shape))
-        return u, np.zeros(self.shape, dtype=np.bool_), above
-
-    @cached_property
-    def residual(self) -> np.ndarray:
-        """Residuals of the vertices' mass balances."""
-        return np.zeros(self.shape)
 
 
 # not compiled for calls from Python: the call of a compiled kernel would take longer than these slices
