@@ -63,7 +63,7 @@ from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import DensityField
 from exudyn_ehd.film.reynolds.balance import FilmTerms
-from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require_number, warn_user
+from exudyn_ehd.status import ROUNDING, PlausibilityWarning, Status, require_bool, require_number, warn_user
 
 # Lowest gauge pressure of the absolute vacuum, Pa, at the highest air pressure. Lower cavity pressures cause a warning.
 VACUUM = -1.1e5
@@ -402,12 +402,6 @@ class FilmSystem:
         return self.cavity_pressure if self.kind >= CLIPPED else -np.inf
 
 
-# Pressure times the square of the gap over the scaled speed, a measure relative to the Couette flow, below which a
-# vertex counts as being without pressure. A wedge causes about its eccentricity ratio, round-off about 1e-16. With
-# larger values, rows with little oil supply count as unfed.
-SMALLEST_PRESSURE = 1e-9
-
-
 def status_of(s: FilmSystem, status: Status) -> Status:
     """Return the status of a solution; NO_OIL for a steady film in which a row receives no oil."""
     if status is not Status.CONVERGED or s.turns == 0.0:
@@ -416,19 +410,14 @@ def status_of(s: FilmSystem, status: Status) -> Status:
     return Status.NO_OIL if unfed and not s.H_t.any() else status
 
 
-@njit(cache=True)
-def has_unfed_row(P, H, fixed, turns, pc):
-    """Return whether oil circulates in a row without pressure or prescribed vertices; ``turns`` of `FilmSystem`."""
-    n, m = P.shape
-    for j in range(m):
-        fed = turns == 0.0
-        for i in range(n):
-            if fed:
-                break
-            fed = fixed[i, j] or (P[i, j] - pc) * H[i, j] * H[i, j] > SMALLEST_PRESSURE * turns
-        if not fed:
-            return True
-    return False
+def has_unfed_row(P: np.ndarray, H: np.ndarray, fixed: np.ndarray, turns: float, pc: float) -> bool:
+    """Return whether oil circulates in a row without pressure or prescribed vertices; ``turns`` of `FilmSystem`.
+
+    A vertex is without pressure if pressure times the square of the gap over the scaled speed, a measure relative to
+    the Couette flow, is nothing. A wedge causes about its eccentricity ratio, round-off about 1e-16.
+    """
+    fed = fixed | ((P - pc) * H * H > ROUNDING * turns)
+    return turns != 0.0 and not fed.any(axis=0).all()
 
 
 @njit(cache=True)

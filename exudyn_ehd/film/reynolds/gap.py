@@ -153,14 +153,6 @@ def stepped_links(
         g[:], c[:] = 2.0 * H3 * b3 / (H3 + b3), (H * b3 + b * H3) / (H3 + b3)
 
 
-# Factors that convert `Gradients.by` (rows) to derivatives to values at vertices (columns: the vertex, the next and the
-# previous one in theta, the next and the previous one in z): for the gap, and for the rate. The gap on a link in theta
-# is the mean of both ends.
-_BY_GAP, _BY_RATE = np.zeros((2, 10, 5))
-_BY_GAP[0, :2] = _BY_GAP[1, :3:2] = 0.5
-_BY_GAP[[2, 3, 4, 8, 9], [0, 3, 4, 1, 2]] = _BY_RATE[5, 0] = 1.0
-
-
 class Gradients(NamedTuple):
     """Derivatives of sums over a film, in c entries.
 
@@ -211,13 +203,14 @@ class Gradients(NamedTuple):
 
     def matrix(self, shape: tuple[int, int], count: int, by_gap: float, by_rate: float) -> csr_matrix:
         """Return ``by_gap d/dH + by_rate d/dH_t`` (count, n m) of the sums, to gaps and rates at the vertices."""
-        (n, m), at = shape, self.places
-        column = at // m
-        next_x, last_x = at + np.where(column + 1 < n, m, m - n * m), at - np.where(column > 0, m, m - n * m)
+        (n, m), on, back, own, above, below, rate = shape, *self.by[:6]
+        # the gap on a link in theta is the mean of both ends
+        on_next, on_last = 0.5 * on + self.by[8], 0.5 * back + self.by[9]
+        weights = by_gap * np.array((own + 0.5 * (on + back), on_next, on_last, above, below))
+        weights[0] += by_rate * rate
         # entries for vertices beyond the ends are 0
-        around = np.stack((at, next_x, last_x, np.minimum(at + 1, n * m - 1), np.maximum(at - 1, 0)), axis=1)
-        weights = self.by.T @ (by_gap * _BY_GAP + by_rate * _BY_RATE)
-        return csr_matrix((weights.ravel(), (np.repeat(self.rows, 5), around.ravel())), shape=(count, n * m))
+        around = (self.places + np.array([[0], [m], [-m], [1], [-1]])) % (n * m)
+        return csr_matrix((weights.ravel(), (np.tile(self.rows, 5), around.ravel())), shape=(count, n * m))
 
     def fields(self, rows: np.ndarray, shape: tuple[int, int]) -> tuple[np.ndarray, ...]:
         """Gradients ``-rows . dr`` of k functionals with the weights ``rows`` (k, count).
