@@ -22,7 +22,6 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from scipy.sparse import csr_matrix
 
 from exudyn_ehd.compilation import FAST, I1, I4, NO, U0, U1, U2, YES, unsigned
 
@@ -255,35 +254,3 @@ def solve_columns(lower, upper, inverse, symmetric, count, width, x):
             own, given = rows[r], x[r, start : start + wide]
             for q in range(wide):
                 given[q] = own[q]
-
-
-def product(matrix: np.ndarray | csr_matrix, columns: np.ndarray) -> np.ndarray:
-    """Return ``matrix columns`` (r, k) for a matrix (r, count), dense or sparse, and columns (count, k)."""
-    if isinstance(matrix, np.ndarray):
-        return matrix @ columns
-    by_row, out = matrix.tocsr(), np.empty((matrix.shape[0], columns.shape[1]))
-    _sparse_product(by_row.indptr, by_row.indices, by_row.data, columns, out)
-    return out
-
-
-@njit(cache=True, fastmath=FAST)
-def _sparse_product(indptr, indices, data, columns, out):
-    """Set `product` in ``out`` from the rows of a sparse matrix, in tiles that fit into the processor's cache."""
-    sides = columns.shape[1]
-    for start in range(0, sides, TILE):
-        end = min(start + TILE, sides)
-        for a in range(len(out)):
-            first, last, total = indptr[a], indptr[a + 1], out[a, start:end]
-            fours = last - (last - first) % 4
-            for q in range(total.size):
-                total[q] = 0.0
-            for p in range(first, fours, 4):
-                w0, w1, w2, w3 = data[p], data[p + 1], data[p + 2], data[p + 3]
-                x0, x1 = columns[indices[p], start:end], columns[indices[p + 1], start:end]
-                x2, x3 = columns[indices[p + 2], start:end], columns[indices[p + 3], start:end]
-                for q in range(total.size):
-                    total[q] += w0 * x0[q] + w1 * x1[q] + w2 * x2[q] + w3 * x3[q]
-            for p in range(fours, last):
-                w, x = data[p], columns[indices[p], start:end]
-                for q in range(total.size):
-                    total[q] += w * x[q]

@@ -16,7 +16,6 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix, diags_array
 
-from exudyn_ehd.film.banded.substitution import product
 from exudyn_ehd.film.cavitation.linear_film import pressures_by_linear
 from exudyn_ehd.film.reynolds.gap import transposed_slopes
 from exudyn_ehd.film.surfaces.contact import contact_weights
@@ -54,7 +53,7 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
     k, size = bore.size, MOTION_SIZE
     change, (by_q, by_rate) = Balances(film).changes(bore.shapes, *combinations), bore_tangent(film, bore)
     wrench = wrench_weights(film) @ (adjoint_rows(film) @ change)
-    out = np.concatenate((wrench, product(load_columns(film, bore).T, change)))
+    out = np.concatenate((wrench, load_columns(film, bore).T @ change))
     out[:6, :size] += motion_tangent(film)
     contact: np.ndarray | float = 0.0
     if film.pressing is not None:

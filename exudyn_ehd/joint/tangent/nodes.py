@@ -22,7 +22,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_matrix, diags, eye_array
 
-from exudyn_ehd.film.banded.substitution import TILE, product
+from exudyn_ehd.film.banded.substitution import TILE
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.gap import Gradients
 from exudyn_ehd.film.solvers.film import ends_of_cavities
@@ -84,7 +84,7 @@ class BoreForces:
         along = np.moveaxis(forces, 0, 1).copy()
         cos, sin = (field.reshape(-1, *(1,) * (forces.ndim - 2)) for field in (self.cos, self.sin))
         along[:, 0], along[:, 1] = cos * forces[0] - sin * forces[1], sin * forces[0] + cos * forces[1]
-        return product(self.onto_nodes, along.reshape(len(along), -1)).reshape(self.count, *along.shape[1:])
+        return (self.onto_nodes @ along.reshape(len(along), -1)).reshape(self.count, *along.shape[1:])
 
 
 def slope_matrices(grid: FilmGrid) -> tuple[csr_matrix, csr_matrix]:
