@@ -149,11 +149,20 @@ class OilLine:
 
         ``film``, ``store``: results of `FilmSolver.fill_weights`; ``unknowns`` (count,): flat vertices of the balances.
         """
-        carried, full = fills
-        rows, places = np.empty((2, 5 * full.places.size), dtype=np.int64)
-        by = np.empty((len(full.by), 5 * full.places.size))
-        count = _spread_fills(full.places, carried.by, full.by, film, store, unknowns, rows, places, by)
-        return Gradients(rows[:count], places[:count], by[:, :count])
+        (carried, full), m, size = fills, store.shape[1], store.size
+        c, number = full.places, np.full(size, -1)
+        number[unknowns] = np.arange(unknowns.size)
+        prv, fx, fz = (c - m) % size, film.fx.reshape(-1), film.fz.reshape(-1)
+        # nothing flows over the last row's links
+        out = np.array(
+            (np.maximum(fx[c], 0.0), -np.minimum(fx[prv], 0.0), np.maximum(fz[c], 0.0), -np.minimum(fz[c - 1], 0.0))
+        )
+        shares = film.prompt.reshape(-1)[c] * np.vstack((out.sum(axis=0), -out))
+        rows = number[np.array((c, c + m, prv, c + 1, c - 1)) % size]
+        target, q = np.nonzero((shares != 0.0) & (rows >= 0))
+        stored = np.where(target == 0, store.reshape(-1)[c[q]], 0.0)
+        by = shares[target, q] * carried.by[:, q] + stored * full.by[:, q]
+        return Gradients(rows[target, q], c[q], by)
 
 
 @njit(cache=True)
@@ -268,33 +277,3 @@ def add_curve(curve, terms, density, slopes):
         if c > 0:
             slopes[3, c - 1] += carried * min(across[c - 1], 0.0) * left
         slopes[4, c] += held * area[c] * grow[c]
-
-
-@njit(cache=True)
-def _spread_fills(fills, by_carried, by_fill, film, store, unknowns, rows, places, by):
-    """Set the entries of `OilLine.balance_gradients` for the vertices ``fills``; returns their number."""
-    n, m = store.shape
-    number = np.full(n * m, -1)
-    for r in range(unknowns.size):
-        number[unknowns[r]] = r
-    targets, shares, count = np.empty(5, dtype=np.int64), np.empty(5), 0
-    for q in range(fills.size):
-        c = fills[q]
-        i = c // m
-        j = c - i * m
-        prv = i - 1 if i > 0 else n - 1
-        targets[0], targets[1], targets[2] = c, c + m if i + 1 < n else j, prv * m + j
-        targets[3], targets[4] = c + 1 if j + 1 < m else c, c - 1 if j > 0 else c
-        prompt = film.prompt[i, j]
-        shares[1] = -prompt * max(film.fx[i, j], 0.0)
-        shares[2] = prompt * min(film.fx[prv, j], 0.0)
-        shares[3] = -prompt * max(film.fz[i, j], 0.0) if j + 1 < m else 0.0
-        shares[4] = prompt * min(film.fz[i, j - 1], 0.0) if j > 0 else 0.0
-        shares[0] = -(shares[1] + shares[2] + shares[3] + shares[4])
-        for e in range(5):
-            if shares[e] != 0.0 and number[targets[e]] >= 0:
-                rows[count], places[count] = number[targets[e]], c
-                for d in range(by.shape[0]):
-                    by[d, count] = shares[e] * by_carried[d, q] + (store[i, j] * by_fill[d, q] if e == 0 else 0.0)
-                count += 1
-    return count
