@@ -55,7 +55,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.compilation import FAST
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.grid import Mesh
 from exudyn_ehd.film.reynolds.balance import FilmTerms
@@ -92,11 +91,18 @@ class RuptureLine:
         Pressure above the cavity's at s = 1.
     f, k, s : (n, m) arrays
         Views of ``block``.
+    density : float
+        Density in the cavity over that at ambient pressure.
+    gap_ratio : (n, m) array
+        t of the module.
+    lift_by_speed : (m,) array
+        Conductance that a liner's deflection adds to k, over vx.
     """
 
     def __init__(self, block: np.ndarray, shape: tuple[int, int]) -> None:
         self.block, self.whole = block, block[4]
         self.f, self.k, self.s = (block[row].reshape(shape) for row in (0, 1, 6))
+        self.density, self.gap_ratio, self.lift_by_speed = 1.0, np.zeros(shape), np.zeros(shape[1])
 
     def gradients(
         self,
@@ -108,9 +114,13 @@ class RuptureLine:
         squeeze: bool,
         mesh: tuple[np.ndarray, ...],
     ) -> Gradients:
-        """Derivatives of -N in the balances of the last solution, with its ``gaps`` at vertices and links."""
+        """Derivatives of -N in the balances of the last solution.
+
+        ``gaps`` (at vertices and links) and ``flux`` are those at the cavity pressure.
+        """
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
-        return Gradients(*line_rows(self.block, work.number, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh))
+        own = self.block, self.gap_ratio, self.density, self.lift_by_speed, work.number
+        return Gradients(*line_rows(*own, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh))
 
 
 @njit(cache=True, inline="always")
@@ -118,31 +128,12 @@ def line_terms(kx, b, fixed, in_cells, line):
     """Set f, k and ``whole`` of all vertices in the fields ``line``; f is 0 everywhere if not ``in_cells``."""
     links, rest, known, m = kx.reshape(-1), b.reshape(-1), fixed.reshape(-1), b.shape[1]
     f, k, whole = line[0], line[1], line[4]
-    if not in_cells:
-        for c in range(f.size):
-            f[c], whole[c] = 0.0, 0.0
-        return
-    last = rest.size - m
-    for start, end, prv, nxt in ((0, m, last, m), (m, last, 0, 2 * m), (last, rest.size, last - m, 0)):
-        at, before, behind = slice(start, end), slice(prv, prv + end - start), slice(nxt, nxt + end - start)
-        _terms(links[before], links[at], rest[at], f[at], k[at], whole[at])
-        _clear_known(known[before], known[at], known[behind], f[at], whole[at])
-
-
-@njit(cache=True, fastmath=FAST, error_model="numpy")
-def _terms(before, links, rest, f, k, whole):
     for c in range(f.size):
-        k[c] = 0.5 * (before[c] + links[c])
-        can = (rest[c] < 0.0) & (before[c] > 0.0) & (links[c] > 0.0)
-        f[c] = -rest[c] if can else 0.0
-        whole[c] = 0.5 * f[c] / (k[c] if can else 1.0)
-
-
-@njit(cache=True)
-def _clear_known(before, known, behind, f, whole):
-    for c in range(f.size):
-        if known[c] | before[c] | behind[c]:
-            f[c] = whole[c] = 0.0
+        behind = c + m if c + m < f.size else c + m - f.size
+        k[c] = 0.5 * (links[c - m] + links[c])
+        can = in_cells and rest[c] < 0.0 and links[c - m] > 0.0 and links[c] > 0.0
+        f[c] = -rest[c] if can and not (known[c - m] | known[c] | known[behind]) else 0.0
+        whole[c] = 0.5 * f[c] / k[c] if f[c] > 0.0 else 0.0
 
 
 @njit(cache=True, inline="always")
@@ -157,15 +148,6 @@ def weigh_line(line, number):
             weights[1, found] = weights[0, found] * f[c] * s[c] / k[c]
             found += 1
     return rows[:found], places[:found], weights[:, :found].copy()
-
-
-@njit(cache=True)
-def line_rows(line, number, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh):
-    """Rows, flat vertices and derivatives of `RuptureLine.gradients`."""
-    rows, places, weights = weigh_line(line, number)
-    by = np.zeros((10, places.size))
-    line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh, by)
-    return rows, places, by
 
 
 @njit(cache=True)
@@ -225,24 +207,18 @@ def limit_by_liner(line, HF, beta, lift, gap_ratio_out):
 
 
 @njit(cache=True)
-def _by_bare(t):
-    """Return df / d(f without liner), and d(ln f) / d(ln k), which is equal to d(ln f) / d(ln h)."""
-    held = 1.0 / (1.0 + t * t)
-    turned = 2.0 * (t * held) * (t * held)
-    return held - turned, turned / held
-
-
-@njit(cache=True)
-def liner_rows(line, gap_ratio, density, lift, number, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh):
-    """Return the results of `line_rows`, with the derivatives through t and through the conductance that the liner
-    adds, ``lift`` (m,) times the speed."""
+def line_rows(line, gap_ratio, density, lift, number, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh):
+    """Rows, flat vertices and derivatives of `RuptureLine.gradients`, those through t and through the conductance that
+    a liner adds, ``lift`` (m,) times the speed, included."""
     rows, places, weights = weigh_line(line, number)
     gap, t, m = HF.reshape(-1), gap_ratio.reshape(-1), HF.shape[1]
     f, k, s, by = line[0], line[1], line[6], np.zeros((10, places.size))
     for q in range(places.size):
         c = places[q]
-        by_f, turned = _by_bare(t[c])
-        short = weights[0, q]
+        # df / d(f without liner), and d(ln f) / d(ln k), which is equal to d(ln f) / d(ln h)
+        held = 1.0 / (1.0 + t[c] * t[c])
+        turned = 2.0 * t[c] * t[c] * held
+        by_f, short = held * (1.0 - turned), weights[0, q]
         weights[1, q] -= short * turned * f[c] / k[c]
         weights[0, q] = density * short * by_f
         by[0, q] = by[1, q] = -short * turned * f[c] / (gap[c - m] + gap[c])
@@ -287,19 +263,12 @@ class FilmLine(RuptureLine):
 
     Attributes
     ----------
-    density : float
-        Density in the cavity over that at ambient pressure.
-    gap_ratio : (n, m) array
-        t of the module.
-    lift_by_speed : (m,) array
-        Conductance that a liner's deflection adds to k, over vx.
     liner : (float, (n, m) array)
         Compliance, and gaps on the links at the cavity pressure.
     """
 
     def __init__(self, block: np.ndarray, shape: tuple[int, int]) -> None:
         super().__init__(block, shape)
-        self.density, self.gap_ratio, self.lift_by_speed = 1.0, np.zeros(shape), np.zeros(shape[1])
         self.liner = 0.0, self.gap_ratio
 
     def take(self, film: FilmTerms, b: np.ndarray, density: float, vx: float) -> None:
@@ -308,22 +277,6 @@ class FilmLine(RuptureLine):
         line_terms(film.kx, density * b, film.fixed, True, self.block)
         if beta > 0.0:
             limit_by_liner(self.block, gaps, beta, self.lift_by_speed * vx, self.gap_ratio)
-
-    def gradients(
-        self,
-        work: Workspace,
-        gaps: tuple[np.ndarray, np.ndarray],
-        flux: LinkFlux | None,
-        speeds: tuple[float, float],
-        flow_x: float,
-        squeeze: bool,
-        mesh: tuple[np.ndarray, ...],
-    ) -> Gradients:
-        """Return the results of `RuptureLine.gradients`, with the liner's contribution, for ``gaps`` and ``flux`` at
-        the cavity pressure."""
-        slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
-        rest = self.block, self.gap_ratio, self.density, self.lift_by_speed, work.number
-        return Gradients(*liner_rows(*rest, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh))
 
 
 def undeformed(line: Gradients, chain: GapChain | None) -> Gradients:
