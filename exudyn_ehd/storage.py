@@ -33,6 +33,9 @@ from exudyn_ehd.progress import announced
 from exudyn_ehd.status import EHDError, InputError
 
 CACHE_VARIABLE = "EXUDYN_EHD_CACHE"
+# Version of all algorithms whose results are kept: raise it with every change of their results, so that older files are
+# not used.
+FORMAT = 7
 # Bytes of all arrays kept.
 LARGEST_CACHE = 3e8
 
@@ -183,12 +186,11 @@ def cached_arrays(name: str, key: object, compute: Callable[[], Arrays]) -> Arra
     name : str
         Start of the file's name, of the warning about a damaged file, and what long work says that it makes.
     key : object
-        Everything that determines the arrays, as for `fingerprint`, a number for the format and for the algorithm
-        included.
+        Everything that determines the arrays besides `FORMAT`, as for `fingerprint`.
     compute : function
         Makes the arrays.
     """
-    path = cache_folder() / f"{name}_{fingerprint(key)}.bin"
+    path = cache_folder() / f"{name}_{fingerprint((FORMAT, key))}.bin"
     stored = None
     with suppress(OSError):
         stored = read_arrays(path, path.stem)

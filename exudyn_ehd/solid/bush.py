@@ -27,7 +27,6 @@ from typing import ClassVar
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.solid import pressure_modes
 from exudyn_ehd.solid.elements.element import HEX20, Quadrature
 from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder, Surface, directed
 from exudyn_ehd.solid.pressure_modes import FilmSurface, film_modes, film_points, orthogonal_on
@@ -308,7 +307,7 @@ def bore_modes(bush: ModalBush, length: float | None = None) -> BoreModes:
     length = 2.0 * float(min(-mesh.bore.z.min(), mesh.bore.z.max())) if length is None else length
     surfaces = mesh.bore.nodes, mesh.bore.faces, mesh.outer.nodes
     steel = bush.material.youngs_modulus, bush.material.poisson_ratio
-    described = pressure_modes.FORMAT, steel, bush.tolerance, bush.tilted, length
+    described = steel, bush.tolerance, bush.tilted, length
     key = described, mesh.nodes, mesh.elements, surfaces, bush.quadrature
     data = cached_arrays("bush_modes", key, lambda: compute_modes(bush, mesh, length))
     return BoreModes(mesh=mesh, error=float(data.pop("error")), **data)

@@ -182,11 +182,6 @@ def _place(where: str, value: tuple[float, float]) -> tuple[float, float]:
     return low, high
 
 
-# Version of the algorithm, like `exudyn_ehd.solid.pressure_modes.FORMAT`, which counts here too: raise it with every
-# change of the mesh.
-FORMAT = 4
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class JournalModes:
     """Modes of a journal's surface under the film.
@@ -238,13 +233,9 @@ def journal_modes(journal: ElasticJournal, radius: float, length: float) -> Jour
     InputError
         If the tolerance takes more waves than the search allows.
     """
-    described = (FORMAT, journal.material.lame, journal.span, journal.held, journal.inner_radius)
+    described = (journal.material.lame, journal.span, journal.held, journal.inner_radius)
     choice = journal.tolerance, journal.tilted, radius, length
-    data = cached_arrays(
-        "journal_modes",
-        (*described, *choice, films.FORMAT),
-        lambda: _Reduction(journal, radius, length).modes(),
-    )
+    data = cached_arrays("journal_modes", (*described, *choice), lambda: _Reduction(journal, radius, length).modes())
     error = float(data.pop("error"))
     return JournalModes(edges=film_edges(length, data["profiles"].shape[1] // 2), error=error, **data)
 

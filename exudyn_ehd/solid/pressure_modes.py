@@ -56,8 +56,7 @@ from scipy.sparse import csr_matrix
 from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.status import InputError
 
-# Version of the choice of modes: raise it with every change of what follows, so that files of older modes are not used.
-FORMAT = 6
+# With every change of what follows, raise `exudyn_ehd.storage.FORMAT`.
 LARGEST_WAVE, LARGEST_AXIAL = 32, 10
 # Films of the set and those that measure the error: eccentricity ratios; slopes and waves of the gap (shares of the
 # gap left at the loaded side); phases of both (rad, from the direction of the eccentricity); numbers of waves; crowns
