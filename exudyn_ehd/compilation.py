@@ -31,7 +31,9 @@ I0, I1, I4 = np.int64(0), np.int64(1), np.int64(4)
 unsigned: Any = np.uint64
 U0, U1, U2, U3, U4 = (unsigned(k) for k in range(5))
 YES, NO = np.True_, np.False_
-
+# Tolerance of iterations for a film, relative: some hundred units of round-off. Larger values reduce the accuracy,
+# smaller ones prevent convergence. Largest number of their steps.
+TOLERANCE, MOST_STEPS = 1e-13, 60
 
 MESSAGE = "exudyn_ehd: compiling kernels, once per installation (about 20 s for a first film) ..."
 

@@ -27,14 +27,13 @@ import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid, axial_metric, axial_vertices, rows_between, tensor_grid
 from exudyn_ehd.film.reynolds.gap import gap_slopes
-from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number, require_type
+from exudyn_ehd.film.supply.rows import LEAST
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, ROUNDING, Checked, InputError, require_number, require_type
 
-# Smallest extent of an arc, and of its parts before and behind a step, rad; smallest numbers of intervals on an arc and
-# on such a part. Smaller values reduce the accuracy.
-SMALLEST_ARC, FEWEST_ON_ARC, FEWEST_ON_PART = 0.05, 8, 4
-# Angle below which two edges coincide, rad: larger than round-off, smaller than any groove. Smallest length of a dam's
-# lands over the bearing's length: smaller ones cannot hold the pressure of the dam.
-TOUCHING, LEAST_LANDS = 1e-9, 0.02
+# Smallest extent of an arc, and of its parts before and behind a step, rad. Smaller values reduce the accuracy.
+SMALLEST_ARC = 0.05
+# Smallest length of a dam's lands over the bearing's length: smaller ones cannot hold the pressure of the dam.
+LEAST_LANDS = 0.02
 # Distance of either row from the side of a dam, and smallest distance of two sides with rows of their own, over the
 # half length. Smaller values cause round-off, larger ones a slope instead of a step.
 SIDE, BETWEEN_SIDES = 2e-4, 1e-3
@@ -324,7 +323,7 @@ def check_arcs(arc: Arc | None, arcs: tuple[Arc, ...], length: float) -> None:
     arcs = arcs if arc is None else (arc,)
     ends = [part.start + part.extent for part in arcs]
     between = [
-        (after.start - end + TOUCHING) % math.tau - TOUCHING
+        (after.start - end + ROUNDING) % math.tau - ROUNDING
         for after, end in zip((*arcs[1:], *arcs[:1]), ends, strict=True)
     ]
     if sum(between) + sum(part.extent for part in arcs) > 1.5 * math.tau:
@@ -375,19 +374,19 @@ def _rows(dams: list[float], n_z: int, stretch: float) -> tuple[np.ndarray, np.n
         sides += [side] if not sides or side - sides[-1] > BETWEEN_SIDES else []
     bounds = [*(-side for side in sides[::-1]), *sides]
     edges = [-1.0, *(z + way for z in bounds for way in (-SIDE, SIDE)), 1.0]
-    counts = [max(FEWEST_ON_PART, 2 * math.ceil(0.25 * n_z * (b - a))) for a, b in zip(edges[::2], edges[1::2])]
+    counts = [max(LEAST, 2 * math.ceil(0.25 * n_z * (b - a))) for a, b in zip(edges[::2], edges[1::2])]
     return rows_between(edges, [k for n in counts for k in (n, 1)][:-1], stretch)
 
 
 def _columns(arc: Arc, n_theta: int) -> tuple[np.ndarray, ...]:
     """Return the angles of an arc's columns and of the links behind them, widths, inverse distances and weights, (n,)
     each."""
-    half, count = 0.5 * arc.extent, max(FEWEST_ON_ARC, math.ceil(n_theta * arc.extent / math.tau))
+    half, count = 0.5 * arc.extent, max(2 * LEAST, math.ceil(n_theta * arc.extent / math.tau))
     if arc.step is None:
         x, weight = axial_vertices(count, half, 0.0)
         step = np.full(x.size, axial_metric(x)[0].max())
     else:
-        before = min(max(FEWEST_ON_PART, round(count * arc.step / arc.extent)), count - FEWEST_ON_PART)
+        before = min(max(LEAST, round(count * arc.step / arc.extent)), count - LEAST)
         x, weight = rows_between((-half, arc.step - half, half), (before, count - before), 0.0)
         step = np.diff(x, append=0.0)
     step[-1] = 0.0
@@ -400,7 +399,7 @@ def columns_of_arcs(theta: np.ndarray, arcs: tuple[Arc, ...]) -> list[slice]:
     """Return the columns of every arc as slices of the angles theta (n,) of a film."""
     found, first = [], 0
     for arc in arcs:
-        behind = first + int(np.argmax(theta[first:] > arc.start + arc.extent - TOUCHING)) + 1
+        behind = first + int(np.argmax(theta[first:] > arc.start + arc.extent - ROUNDING)) + 1
         found.append(slice(first, behind))
         first = behind
     return found
@@ -450,7 +449,7 @@ class LobeTerm:
             if arc.dam is not None:
                 step, half = math.tau if arc.step is None else arc.step, 0.5 * arc.dam.length / grid.reference_length
                 depth = arc.dam.depth / clearance * (np.abs(grid.z) < half)
-                at_step = np.abs(x - step) < TOUCHING
+                at_step = np.abs(x - step) < ROUNDING
                 dams[part] = np.outer(np.where(at_step, 0.5, x < step), depth)
                 links[part] += np.outer(face < step, depth)
                 # rows outside of seals have no weight: slope 0

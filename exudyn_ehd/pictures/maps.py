@@ -15,7 +15,7 @@ from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 from matplotlib.projections.polar import PolarAxes
 
-from exudyn_ehd.film.arcs import TOUCHING, columns_of_arcs
+from exudyn_ehd.film.arcs import columns_of_arcs
 from exudyn_ehd.film.supply.areas import covers, placed
 from exudyn_ehd.pictures.records import FilmRecord, Target, Unit, label, shown, unit_for
 from exudyn_ehd.pictures.style import BLACK, GREY, TALL, WIDE, headed, picture, style_ticks
@@ -103,8 +103,8 @@ def resampled(film: FilmRecord, values: np.ndarray, angles: np.ndarray, along: n
     out = np.full((angles.size, along.size), np.nan)
     for part in columns_of_arcs(film.theta, arcs):
         first, last = film.theta[part][[0, -1]]
-        at = first + np.mod(angles - first + TOUCHING, math.tau)
-        inside = at <= last + 2.0 * TOUCHING
+        at = first + np.mod(angles - first + ROUNDING, math.tau)
+        inside = at <= last + 2.0 * ROUNDING
         out[inside] = np.stack([np.interp(at[inside], film.theta[part], row) for row in rows[part].T], axis=1)
     return out
 

@@ -37,6 +37,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.compilation import TOLERANCE
 from exudyn_ehd.film.cavitation.rupture_line import line_gradients
 from exudyn_ehd.film.grid import Mesh
 from exudyn_ehd.film.reynolds.balance import FilmTerms
@@ -46,8 +47,6 @@ from exudyn_ehd.film.reynolds.links import LinkFlux
 # s from which on the fill of a vertex is 1. Larger values delay the response of the pressure to short motions, smaller
 # ones make the fill steeper over s.
 FILLED = 0.25
-# Smallest f / o at which a vertex has a curve. Smaller ratios are round-off; larger values omit weak curves.
-SMALLEST_RATIO = 1e-13
 
 
 class CurveFields(NamedTuple):
@@ -185,7 +184,8 @@ def curve_terms(film, b, density, lift, curve):
         curve.k[c] = 0.5 * (along[prv] + along[c]) + lift[c % m]
         curve.f[c] = curve.whole[c] = curve.drop[c] = curve.bend[c] = 0.0
         if (
-            -rest[c] > SMALLEST_RATIO * out
+            # smaller ones are round-off
+            -rest[c] > TOLERANCE * out
             and out > 0.0
             and min(along[prv], along[c]) > 0.0
             and not (known[c] | known[prv] | known[nxt])

@@ -189,11 +189,6 @@ def line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squ
             by[5, found] -= source * wx * wz
 
 
-# Gap over the clearance below which surfaces at the cavity pressure count as touching: no line lies there. Larger
-# values omit lines in thin films, smaller ones divide by nearly vanishing gaps.
-TOUCHING = 1e-6
-
-
 @njit(cache=True)
 def limit_by_liner(line, HF, beta, lift, gap_ratio_out):
     """Set t in ``gap_ratio_out`` and f / (1 + t^2), for a liner of compliance ``beta`` that adds ``lift`` (m,) to k."""

@@ -37,13 +37,8 @@ from exudyn_ehd.film.grid import STRETCH, bearing_grid
 from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.solvers.solver import FilmSolver
-from exudyn_ehd.status import Checked, FilmError, Status, require_count, require_number
+from exudyn_ehd.status import ROUNDING, Checked, FilmError, Status, require_count, require_number
 from exudyn_ehd.storage import cached_arrays
-
-FORMAT = 3
-# Eccentricity ratio below which the direction of e is set to that of V. The relative error of the force is about this
-# number; smaller values cause round-off in the direction.
-SMALLEST_ECCENTRICITY = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -207,8 +202,9 @@ def impedance_force(nodes, step_s, step_alpha, x, y, x_t, y_t, omega, force_out,
         q = 1.0
         vx, vy = (x / eps, y / eps) if eps > 0.0 else (1.0, 0.0)
     ex, ey = x, y
-    if eps < SMALLEST_ECCENTRICITY:
-        eps = SMALLEST_ECCENTRICITY
+    # below it the direction of e is that of V; the relative error of the force is about this eccentricity ratio
+    if eps < ROUNDING:
+        eps = ROUNDING
         ex, ey = eps * vx / q, eps * vy / q
     cross = ex * vy - ey * vx
     alpha = np.arctan2(abs(cross), ex * vx + ey * vy)
@@ -286,6 +282,6 @@ def impedance_wrench(nodes, p, motion, wrench_out, tangent_out):
 def impedance_nodes(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> np.ndarray:
     """Load the nodes of the map from the disk, or build and store them; see `exudyn_ehd.storage`."""
     condition = type(closure).__name__ + " in cells" * bool(closure.line_in_cells)
-    key = FORMAT, film, condition, length_to_radius
+    key = film, condition, length_to_radius
     data = cached_arrays("impedance_maps", key, lambda: {"nodes": build_nodes(film, closure, length_to_radius)})
     return data["nodes"]

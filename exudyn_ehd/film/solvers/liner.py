@@ -57,7 +57,7 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import has_unfed_row
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, mean_in_cells
-from exudyn_ehd.film.cavitation.rupture_line import TOUCHING, AtLine, FilmLine, GapChain
+from exudyn_ehd.film.cavitation.rupture_line import AtLine, FilmLine, GapChain
 from exudyn_ehd.film.cavitation.states import OIL, RUPTURE
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
@@ -66,7 +66,7 @@ from exudyn_ehd.film.solvers.matrix import factor_film
 from exudyn_ehd.film.solvers.newton import GOES_ON, begin, course_from, end_of, offset_pressures, proceed, solve_film
 from exudyn_ehd.film.solvers.sets import pseudo_time
 from exudyn_ehd.film.solvers.winkler import Liner, WinklerElements, find_slopes, liner_residual
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import SMALL, Status
 
 
 class LinerFilm(WinklerElements):
@@ -132,8 +132,8 @@ class LinerFilm(WinklerElements):
         """Apply `FilmArrays.hold_back` with the deflection at the start of the step, so that the result does not depend
         on the initial guess of Newton's method."""
         f, D = self.film, self.film.nothing if self.delta_old is None else self.delta_old
-        np.maximum(self.rigid[0] + D, TOUCHING, out=f.H)
-        np.maximum(self.rigid[1] + 0.5 * (D + np.roll(D, -1, 0)), TOUCHING, out=f.HF)
+        np.maximum(self.rigid[0] + D, SMALL, out=f.H)
+        np.maximum(self.rigid[1] + 0.5 * (D + np.roll(D, -1, 0)), SMALL, out=f.HF)
         self._set_links(f.nothing)
         f.hold_back()
 
@@ -162,8 +162,9 @@ class LinerFilm(WinklerElements):
         self.rates = rates._replace(liner=0.0)
         self.update_elements(np.where(g.fixed, self.P, s.cavity_pressure))
         self.rates = rates
-        shut, gaps = f.HF < TOUCHING, self.gap_fields[:2]
-        np.maximum(gaps, TOUCHING, out=gaps)
+        # no line lies where surfaces at the cavity pressure touch, up to this fraction of the clearance
+        shut, gaps = f.HF < SMALL, self.gap_fields[:2]
+        np.maximum(gaps, SMALL, out=gaps)
         self._set_links(f.nothing)
         flux, chain = copy.deepcopy(f.flux), None
         if self.thin is not None and flux is not None:

@@ -16,11 +16,7 @@ from exudyn_ehd.film.cavitation.states import RUPTURE, add_sink_slopes
 from exudyn_ehd.film.reynolds.balance import film_slopes, oil_links, terms_of
 from exudyn_ehd.film.solvers.winkler import find_slopes
 from exudyn_ehd.film.solvers.winkler_kernels import Rates, add_gap_slopes, load_of, slopes_of
-
-# Smallest difference between largest and smallest pressure, over the scaled speed (the pressure scale of a gap of one
-# clearance). Smaller differences are round-off of a centred journal, and are replaced by this one. Larger values reuse
-# a factor more often.
-SMALLEST_RANGE = 1e-6
+from exudyn_ehd.status import SMALL
 
 
 @njit(cache=True)
@@ -87,7 +83,8 @@ def _factor_any(kind, P, oil, film, feedback, thin, matrix, full, size):
         find_slopes(P, fill, rho, film, elements, links)
         at = slopes_of(gap_slopes), load_of(load), Rates(*rates)
         add_gap_slopes(P, fill, filled, rho, terms, *at, beta, by, slopes)
-        smallest_range = SMALLEST_RANGE * (abs(links[2]) + abs(links[3]))
+        # over the pressure scale of a gap of one clearance; smaller differences are round-off of a centred journal
+        smallest_range = SMALL * (abs(links[2]) + abs(links[3]))
         relative_slopes[:] = 0.0 if thin is None else 1.0 / max(P.max() - P.min(), smallest_range, 1e-300)
         _raise_relative_slopes(gap_slopes[0], gaps[0], rho_P, relative_slopes)
     _add_line_slopes(fill, curve_of(film[3]), terms, rho, slopes)

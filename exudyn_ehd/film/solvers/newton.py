@@ -43,7 +43,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.compilation import I0, I1, NO
+from exudyn_ehd.compilation import I0, I1, MOST_STEPS, NO, TOLERANCE
 from exudyn_ehd.film.banded.workspace import dense_band
 from exudyn_ehd.film.cavitation.closures import imbalance
 from exudyn_ehd.film.cavitation.rupture_line import line_terms
@@ -62,21 +62,17 @@ from exudyn_ehd.film.reynolds.balance import film_balance, terms_of
 from exudyn_ehd.film.reynolds.links import linear_residual
 from exudyn_ehd.film.solvers.matrix import factor_film, solve_step
 from exudyn_ehd.film.solvers.winkler import plain_residual
+from exudyn_ehd.status import SMALL
 
-MOST_STEPS = 60
-# Convergence tolerances. A chord step converges if its estimated error, over the peak pressure, is at most the first
-# one. A step with a new factor converges if its nonlinear change (see `apply_step`) is at most the second one: its
-# error is of the order of the square of this change.
-ERROR_TOLERANCE, NONLINEAR_TOLERANCE = 1e-13, 1e-8
+# A chord step converges if its estimated error, over the peak pressure, is at most `TOLERANCE`. A step with a new
+# factor converges if its nonlinear change (see `apply_step`) is at most this number: its error is of the order of the
+# square of this change. Below a largest change of this size, growth of the residual norm is round-off.
+SMALLEST_CHANGE = 1e-8
 # Largest contraction rate at which chord steps continue. Larger values cost more steps, smaller ones more factors.
 LARGEST_CONTRACTION_RATE = 0.01
-# Largest residual of a vertex. Over the largest flow of the film, it is round-off; the second, looser value holds with
-# a density law, near whose end round-off grows. Over the largest flow that drives the film: larger residuals come from
-# a singular matrix. Larger values reduce the accuracy, smaller ones prevent convergence.
-RESIDUAL_TOLERANCE, LOOSE_TOLERANCE, DRIVE_TOLERANCE = 1e-13, 1e-11, 1e-6
-# Largest negative fill that counts as round-off in a dry cavity. Steady films whose gap has a rate may converge to more
-# negative fills: no such film exists. Larger values accept them, smaller ones reject films with round-off.
-LARGEST_DEFICIT = 1e-6
+# Largest residual of a vertex over the largest flow of the film, in place of `TOLERANCE`, with a density law, near
+# whose end round-off grows. Larger values reduce the accuracy, smaller ones prevent convergence.
+LOOSE_TOLERANCE = 1e-11
 # Weight of a relative change of the density or a gap in the nonlinear change, in which a change of u on a curve has the
 # weight 1. The error of p / p_max after a step is at most the square of the weighted change. For a mineral oil it is
 # (2 b + alpha) / a, about 6^2, times the square of the density's change. Larger values cost another step.
@@ -90,9 +86,8 @@ GOES_ON, FOUND, LOST = 0, 1, 2
 LARGEST_CLOSING = 0.8
 # Growth factors of the residual norm above which a step is halved, with a new factor (chord steps: 1). The second one
 # holds where vertices of a film that conserves mass become full or cavitated: fills then change a step before those of
-# the neighbours. Larger values allow divergence, smaller ones cost steps. Below the third number, the largest change
-# in a step, growth of the norm is round-off.
-LARGEST_GROWTH, LARGEST_REFILL_GROWTH, ROUND_OFF_CHANGE = 2.0, 10.0, 1e-8
+# the neighbours. Larger values allow divergence, smaller ones cost steps.
+LARGEST_GROWTH, LARGEST_REFILL_GROWTH = 2.0, 10.0
 # Largest number of halvings of a step. Number of steps after which a converged film may have the residual
 # `LOOSE_TOLERANCE`: gaps of 1e-5 of the clearance have such a round-off.
 MOST_HALVINGS, TIGHT_STEPS = 12, 20
@@ -192,10 +187,12 @@ def _judge(film, kind, tolerance, stored, is_last, full, state, residual, progre
     if converged or is_last:
         of_drive, of_flows = imbalance(terms_of(film[0], film[1]), P, residual, full, kind == RUPTURE, stored)
         # the round-off of pressures that no longer change may cause a residual above the tolerance
-        at_round_off = converged and previous_change <= ERROR_TOLERANCE
+        at_round_off = converged and previous_change <= TOLERANCE
         if of_flows <= tolerance or at_round_off:
             smallest_fill = snap_to_bounds(film[1], kind, full, P, fill)
-            sound = smallest_fill > -LARGEST_DEFICIT and of_drive <= DRIVE_TOLERANCE
+            # more negative fills are those of steady films whose gap has a rate: no such film exists; larger residuals
+            # over the flows that drive the film come from a singular matrix
+            sound = smallest_fill > -SMALL and of_drive <= SMALL
             outcome = FOUND if sound else LOST
         elif is_last:
             outcome = LOST
@@ -230,14 +227,14 @@ def _take_step(kind, nonlinearity, whole, matrix, size, is_first, fresh, x, full
     if fresh:
         summed_change = 0.0
         converged, reusable = (
-            changes == 0 and nonlinear_change <= NONLINEAR_TOLERANCE and largest_change <= LARGEST_FINAL_CHANGE,
+            changes == 0 and nonlinear_change <= SMALLEST_CHANGE and largest_change <= LARGEST_FINAL_CHANGE,
             changes == 0 and matrix_change <= LARGEST_CONTRACTION_RATE,
         )
     else:
         # the contraction rate is unknown after the first step
         # two steps may differ more by chance than the factor contracts
         contracted = max(largest_change, LARGEST_CONTRACTION_RATE**2 * previous_change)
-        converged = changes == 0 and largest_change * contracted <= ERROR_TOLERANCE * previous_change
+        converged = changes == 0 and largest_change * contracted <= TOLERANCE * previous_change
         reusable = changes == 0 and largest_change <= LARGEST_CONTRACTION_RATE * (1.0 if is_first else previous_change)
     return (
         largest_change < 1e300,
@@ -263,7 +260,7 @@ def proceed(norm, gap, course, kind, pc, full, state, oil, density, film, feedba
     P, residual, x, before = places
     u, above, _ = state
     if feedback is not None and halvings >= 0:
-        worse = norm > limit and progress[4] > ROUND_OFF_CHANGE
+        worse = norm > limit and progress[4] > SMALLEST_CHANGE
         if (not gap > 0.0 or worse) and fraction > 0.0 and halvings < MOST_HALVINGS:
             fraction = 0.5 if fresh else 0.0
             _shorten(fraction, film, pc, full, state, P, before)
@@ -281,7 +278,7 @@ def proceed(norm, gap, course, kind, pc, full, state, oil, density, film, feedba
         # rates at an instant: round-off of the difference of two deflections over a very short time
         stored = elements[3][1] * np.max(np.abs(elements[1][2]) * film[0][7])
         nonlinearity = NONLINEAR_WEIGHT, relative_slopes, 1e300, elements[2][2:].reshape(2, -1), 1.0
-    tolerance = LOOSE_TOLERANCE if density is not None or (progress[2] and step >= TIGHT_STEPS) else RESIDUAL_TOLERANCE
+    tolerance = LOOSE_TOLERANCE if density is not None or (progress[2] and step >= TIGHT_STEPS) else TOLERANCE
     outcome, progress = _judge(film, kind, tolerance, stored, step + 1 == most, full, state, residual, progress)
     fresh = not progress[0]
     if outcome == GOES_ON and fresh:
@@ -344,7 +341,7 @@ def _residual(lower, P, above, oil, density, film, ruptures, out):
 def course_from(size):
     """Return ``course`` of `proceed` before the first step; ``size``: argument of `solve_film`."""
     reusable_at_start, count, width = size
-    return I0, NO, I0 - I1, 1.0, 0.0, count, width, (reusable_at_start, NO, NO, 0.0, ERROR_TOLERANCE)
+    return I0, NO, I0 - I1, 1.0, 0.0, count, width, (reusable_at_start, NO, NO, 0.0, TOLERANCE)
 
 
 @njit(cache=True, inline="always")
@@ -353,7 +350,7 @@ def end_of(outcome, course):
     and the half-bandwidth."""
     step, _, _, _, _, count, width, (_, same_unknowns, converged, summed_change, _) = course
     found = outcome == FOUND
-    return found, found and converged and same_unknowns and summed_change <= ERROR_TOLERANCE, step, count, width
+    return found, found and converged and same_unknowns and summed_change <= TOLERANCE, step, count, width
 
 
 @njit(cache=True, nogil=True)
@@ -406,6 +403,6 @@ def solve_rupturing(size, pc, in_cells, warm, H_t, full, state, film, matrix, pl
         if not known[c]:
             driven = max(driven, abs(inflow[c]))
     # cold start of a film at rest, or of one that only round-off drives: the last pressures are no better guess
-    warm &= driven > RESIDUAL_TOLERANCE * most
+    warm &= driven > TOLERANCE * most
     at_hand, oil = (reusable_at_start and warm, count, width), (None, None, None)
     return solve_film(RUPTURE, pc, warm, at_hand, full, state, oil, None, film, None, matrix, places, None)

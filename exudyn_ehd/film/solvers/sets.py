@@ -20,7 +20,7 @@ from exudyn_ehd.film.cavitation.states import CLIPPED, OIL, RUPTURE
 from exudyn_ehd.film.reynolds.balance import store_content
 from exudyn_ehd.film.solvers.matrix import factor_film
 from exudyn_ehd.film.solvers.newton import solve_film, solve_rupturing
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import ROUNDING, Status
 
 MOST_STEPS = 200
 # Rates of the additional storage, over the rate of the film: first rate; rate above which the continuation fails; rate
@@ -30,9 +30,6 @@ FIRST_RATE, LARGEST_RATE, TRIAL_RATE, SMALLEST_RATE = 100.0, 1e6, 1e-3, 1e-7
 # Factors on the storage's rate after a film that is solved, and after a failure. A smaller first one risks failures, a
 # larger one costs steps.
 RATE_REDUCTION, RATE_GROWTH = 0.3, 8.0
-# Factor on an oil's compressibility that makes it nearly incompressible. Larger values leave a nonlinear film, smaller
-# ones approach round-off.
-SMALLEST_COMPRESSIBILITY = 1e-9
 
 
 def pseudo_time(attempt: Callable[[float], tuple[bool, int]], rate: float) -> tuple[bool, int]:
@@ -76,7 +73,8 @@ def recover(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
     density, steps = s.density, 0
     if density is not None:
         work.warm = False
-        scale, density.scale = density.scale, SMALLEST_COMPRESSIBILITY * density.scale
+        # nearly incompressible, so that the film is linear
+        scale, density.scale = density.scale, ROUNDING * density.scale
         ok, steps = solve_system(s, work)
         density.scale = scale
         beyond = ok and density.is_exhausted(s.linear_pressure)

@@ -11,6 +11,7 @@ from functools import partial
 
 import numpy as np
 
+from exudyn_ehd.compilation import TOLERANCE
 from exudyn_ehd.film.cavitation.closures import Closure, status_of
 from exudyn_ehd.film.cavitation.rupture_line import FilmLine
 from exudyn_ehd.film.grid import FilmGrid
@@ -22,14 +23,10 @@ from exudyn_ehd.film.solvers.liner import LinerFilm, cold_start, failure, pseudo
 from exudyn_ehd.film.solvers.sets import solve_sets
 from exudyn_ehd.film.solvers.winkler import Liner
 from exudyn_ehd.film.supply.restrictors import Reservoirs
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import ROUNDING, Status
 
 # Largest number of trials of Newton's method for the pressures of reservoirs.
 MOST_TRIALS = 40
-# Largest balance of a reservoir over the size of its terms: tolerance, also for a step of the pressures over the peak
-# pressure; and balance that is accepted as round-off if a trial no longer halves it. Larger values reduce the accuracy,
-# smaller ones prevent convergence.
-BALANCE_TOLERANCE, ROUND_OFF_BALANCE = 1e-13, 1e-9
 
 
 class FilmSolver(FilmAnswers):
@@ -146,7 +143,8 @@ class FilmSolver(FilmAnswers):
     def _balance(self, r: Reservoirs, solve: Callable[[], tuple[Status, int]], floor: float) -> tuple[Status, int]:
         """Solve the film and the pressures of its reservoirs by Newton's method; no pressure is below ``floor``, Pa.
 
-        A step is halved if the largest balance grows. An unbroken film of constant properties is linear in the
+        A step is halved if the largest balance over the size of its terms grows; a balance that is not halved any more
+        is accepted as round-off. An unbroken film of constant properties is linear in the
         pressures of the reservoirs: it is solved once, then updated by superposition.
         """
         base, change, smallest_error, steps = r.pressures, np.zeros(len(r.masks)), np.inf, 0
@@ -167,11 +165,9 @@ class FilmSolver(FilmAnswers):
                 error, relative_balance = (
                     float(np.max(np.abs(g) * w[r.live], initial=0.0)) for w in (weights, 1.0 / r.size)
                 )
-                at_round_off = largest_change <= BALANCE_TOLERANCE * self.pressure_scale * float(
-                    np.abs(self.pressure).max()
-                )
-                if relative_balance <= BALANCE_TOLERANCE or (
-                    (relative_balance <= ROUND_OFF_BALANCE or at_round_off) and error > 0.5 * smallest_error
+                at_round_off = largest_change <= TOLERANCE * self.pressure_scale * float(np.abs(self.pressure).max())
+                if relative_balance <= TOLERANCE or (
+                    (relative_balance <= ROUNDING or at_round_off) and error > 0.5 * smallest_error
                 ):
                     return status, steps
             if error < smallest_error:

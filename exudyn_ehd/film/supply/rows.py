@@ -28,7 +28,7 @@ from exudyn_ehd.film.supply.areas import (
 from exudyn_ehd.film.supply.cuts import RECIRCULATION
 from exudyn_ehd.status import ROUNDING, InputError
 
-# Least number of intervals of a land, and of a part of a land without an area.
+# Least number of intervals of a land, of a part of a land without an area, and of an arc before and behind a step.
 LEAST = 4
 # Additional intervals for short parts are taken from a land's longest part, which keeps at least this number.
 KEPT = 6

@@ -57,12 +57,8 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.compilation import MOST_STEPS, TOLERANCE
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, ROUNDING, Checked, InputError, require_number
-
-# Solution for the gap on an elastic element: most Newton steps, and tolerance, which is the size of the last step over
-# the gap at which the contact begins. The slope of the pressure is that before the last step, so that a larger
-# tolerance makes it less exact.
-MOST_STEPS, LAST_STEP = 60, 1e-13
 
 
 class GapLimiter(Protocol):
@@ -253,7 +249,8 @@ def solve_contact_gap(X, compliance, scale, reach, first, step, knots, G, P_out,
                 p, p_h = _pressure_at(min(g, reach), first, step, knots)
                 change = (x + compliance * p - g) / (1.0 - compliance * p_h)
                 g += change
-                if abs(change) <= LAST_STEP * reach:
+                # the slope of the pressure is that before the last step
+                if abs(change) <= TOLERANCE * reach:
                     break
             p += p_h * change
         gap[k], P[k], slope[k] = g, p, p_h / scale
