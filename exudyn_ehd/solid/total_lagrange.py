@@ -290,10 +290,17 @@ class TotalLagrange:
 
     def inversion(self, u: np.ndarray) -> str:
         """Return a message on an element that displacements u (n, 3) turn inside out, with a remedy; empty if none."""
-        N, _, X = self._blocks
-        ratio, element = blocks.smallest_volume_ratio(N, X, self._geometry[0], np.ascontiguousarray(u, dtype=float))
-        if not ratio <= 0.0:
+        elements, G, _ = self._geometry
+        F = np.eye(3) + np.asarray(u)[elements].swapaxes(1, 2)[:, None] @ G.swapaxes(2, 3)
+        # points with a nan are omitted
+        with np.errstate(invalid="ignore"):
+            ratios = np.fmin.reduce(np.linalg.det(F), axis=1)
+        least = np.fmin.reduce(ratios)
+        if not least <= 0.0:
             return ""
+        # the first one of values that differ by round-off alone, as in symmetric meshes
+        element = int(np.argmax(ratios <= least + 1e-3 * abs(least)))
+        ratio = ratios[element]
         place = self.mesh.nodes[self.mesh.elements[element]].mean(axis=0)
         return (
             f"element {element} at {place[0]:.4g}, {place[1]:.4g}, {place[2]:.4g} m has turned inside out (det F = "

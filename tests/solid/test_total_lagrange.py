@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from exudyn_ehd.solid.elements.blocks import smallest_volume_ratio
 from exudyn_ehd.solid.elements.element import GAUSS8, GAUSS27, HEX20, HEX_EDGES, HEX_NODES, IRONS14
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, StressRecovery, TotalLagrange
@@ -52,15 +51,6 @@ def readable_force(solid, u):
             S = lam * np.trace(E) * np.eye(3) + 2 * mu * E
             force[nodes] += weight * np.linalg.det(jacobian) * G @ (F @ S).T
     return force
-
-
-def test_the_least_volume_ratio_equals_theirs():
-    solid = TotalLagrange(mesh=SMALL, material=SOFT)
-    u = 0.002 * np.random.default_rng(6).standard_normal(SMALL.nodes.shape)
-    elements, G, _ = solid._geometry
-    ratios = np.linalg.det(np.eye(3) + np.einsum("eai,eqja->eqij", u[elements], G)).min(axis=1)
-    least, row = smallest_volume_ratio(solid._blocks[0], solid._blocks[2], elements, u)
-    assert least == pytest.approx(ratios.min(), rel=1e-12) and row == ratios.argmin()
 
 
 def test_of_elements_that_are_equal_but_for_round_off_the_first_is_named():

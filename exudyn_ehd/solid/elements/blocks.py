@@ -26,7 +26,6 @@ from exudyn_ehd.solid.elements.kernels import (
     second_piola,
     transposed,
     viscous_strain,
-    volume_change,
 )
 
 # Elements of a block: what a block's gradients take stays in the processor's cache.
@@ -168,26 +167,3 @@ def force_parallel(N, M, X, elements, u, v, law, f_out):
         _block_force(N, M, X[block], elements, block * BLOCK, u, v, law, _work(N), F[block])
     for block in range(len(X)):
         _scatter(F[block], elements, block * BLOCK, f_out)
-
-
-@njit(cache=True)
-def smallest_volume_ratio(N, X, elements, u):
-    """Smallest det F at the quadrature points, and the row of ``elements`` where it is; points with a nan are omitted.
-
-    Values that differ by less than a thousandth, as those of symmetric meshes do by round-off, count as equal: the
-    first one is returned.
-    """
-    least, where = np.inf, 0
-    U, A, _, _ = _work(N)
-    flat = A.reshape(A.size)
-    for block in range(len(X)):
-        first = block * BLOCK
-        count = min(BLOCK, len(elements) - first)
-        _gather(u, elements, first, count, U)
-        np.dot(N, U, A)
-        for q in range(len(N) // 3):
-            for e in range(count):
-                ratio = 1.0 + volume_change(_local(flat, X[block], 9 * BLOCK * q + e, 10 * BLOCK * q + e))
-                if ratio < np.inf and not ratio >= least - 1e-3 * abs(least):
-                    least, where = ratio, first + e
-    return least, where
