@@ -131,8 +131,7 @@ class OilLine:
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
         out = []
         for end in (1.0, FILLED):
-            by, weights = np.zeros((10, places.size)), np.empty((3, places.size))
-            _curve_weights(places, self.fields, end, weights)
+            by, weights = np.zeros((10, places.size)), _curve_weights(places, self.fields, end)
             weights[::2] *= self.density
             line_gradients(places, weights[:2], *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh, by)
             _outflow_gradients(places, weights[2], *gaps, slopes, *speeds, mesh, by)
@@ -207,21 +206,17 @@ def missing_fill(s, end):
     return left * left, -2.0 * left / end
 
 
-@njit(cache=True)
-def _curve_weights(places, curve, end, out):
-    """Set derivatives (3, c) of the fill ``1 - drop missing_fill(s, end)`` at ``places`` (c,) to the right-hand side,
-    k and o."""
-    for q in range(places.size):
-        c = places[q]
-        s, f, o = curve.s[c], curve.f[c], curve.out[c]
-        left, by_s = missing_fill(s, end)
-        by_f = (0.25 * by_s * s - 0.5 * left) / o
-        out[0, q] = -by_f * curve.bend[c]
-        out[1, q] = -0.25 * by_s * s * f / (curve.k[c] * o)
-        # the bounded f has the derivative (f / o)^3 bend to o, with f before it is bounded
-        share = f / o
-        share = share / np.sqrt(max(1.0 - share * share, 1e-300))
-        out[2, q] = 0.5 * left * f / (o * o) + by_f * share * share * share * curve.bend[c]
+def _curve_weights(places: np.ndarray, curve: CurveFields, end: float) -> np.ndarray:
+    """Return derivatives (3, c) of the fill ``1 - drop missing_fill(s, end)`` at ``places`` (c,) to the right-hand
+    side, k and o."""
+    f, k, o, bend, s = (field[places] for field in (curve.f, curve.k, curve.out, curve.bend, curve.s))
+    left = np.maximum(1.0 - s / end, 0.0)
+    by_s = -0.5 * left / end * s
+    by_f = (by_s - 0.5 * left * left) / o
+    # the bounded f has the derivative (f / o)^3 bend to o, with f before it is bounded
+    share = f / o
+    share /= np.sqrt(np.maximum(1.0 - share * share, 1e-300))
+    return np.array((-by_f * bend, -by_s * f / (k * o), 0.5 * left * left * f / (o * o) + by_f * share**3 * bend))
 
 
 @njit(cache=True)
