@@ -51,7 +51,8 @@ of films do not satisfy this condition:
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol, TypeVar, runtime_checkable
+from functools import partial
+from typing import ClassVar, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 from numba import njit
@@ -63,7 +64,16 @@ from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import DensityField
 from exudyn_ehd.film.reynolds.balance import FilmTerms
-from exudyn_ehd.status import ROUNDING, PlausibilityWarning, Status, require_bool, require_number, warn_user
+from exudyn_ehd.status import (
+    NOT_NEGATIVE,
+    ROUNDING,
+    Checked,
+    PlausibilityWarning,
+    Status,
+    require_bool,
+    require_number,
+    warn_user,
+)
 
 # Lowest gauge pressure of the absolute vacuum, Pa, at the highest air pressure. Lower cavity pressures cause a warning.
 VACUUM = -1.1e5
@@ -98,6 +108,31 @@ class Closure(Protocol):
     line_in_cells: bool | None = False
 
 
+def check_cavity_pressure(where: str, pressure: float) -> None:
+    """Raise `InputError` unless ``pressure`` is a number; warn of one below the absolute vacuum."""
+    if require_number(where, pressure, "Pa") < VACUUM:
+        warn_user(
+            f"{where}: {pressure:g} Pa is unusual, bearings have -1e5 Pa (vapour, released air) to what their ends "
+            f"have: it is a gauge pressure, and the absolute vacuum is at -1e5 Pa.",
+            PlausibilityWarning,
+        )
+
+
+class _Ruptures(Closure, Checked):
+    """Base of the closures of films that rupture: checks of their arguments."""
+
+    checks: ClassVar = {
+        "cavity_pressure": check_cavity_pressure,
+        "cavity_shear": partial(NOT_NEGATIVE, at_most=1.0, hint="it is a share."),
+        "line_in_cells": require_bool,
+    }
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.line_in_cells is not None:
+            object.__setattr__(self, "line_in_cells", bool(self.line_in_cells))
+
+
 @dataclass(frozen=True, kw_only=True)
 class FullSommerfeld(Closure):
     """No cavitation: the film carries tension.
@@ -117,7 +152,7 @@ class FullSommerfeld(Closure):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Gumbel(Closure):
+class Gumbel(_Ruptures):
     """Half-Sommerfeld (Gümbel) cavitation: solve the linear film, then cut off pressures below the cavity pressure.
 
     For comparison with `ClassicSOR` and older results. Violates mass conservation at the rupture line: at eccentricity
@@ -151,12 +186,9 @@ class Gumbel(Closure):
 
     clips = True
 
-    def __post_init__(self) -> None:
-        _check_closure(self)
-
 
 @dataclass(frozen=True, kw_only=True)
-class SwiftStieber(Closure):
+class SwiftStieber(_Ruptures):
     """Default cavitation (Swift-Stieber or Reynolds): pressure and its gradient vanish at the rupture line.
 
     The standard model for steadily loaded bearings. The pressure is at least the cavity pressure everywhere; oil in the
@@ -194,20 +226,6 @@ class SwiftStieber(Closure):
     cavity_shear: float = 1.0
     line_in_cells: bool | None = None
 
-    def __post_init__(self) -> None:
-        _check_closure(self)
-
-
-def check_cavity_pressure(name: str, pressure: float) -> None:
-    """Raise `InputError` unless ``pressure`` is a number; warn of one below the absolute vacuum."""
-    where = f"{name}.cavity_pressure"
-    if require_number(where, pressure, "Pa") < VACUUM:
-        warn_user(
-            f"{where}: {pressure:g} Pa is unusual, bearings have -1e5 Pa (vapour, released air) to what their ends "
-            f"have: it is a gauge pressure, and the absolute vacuum is at -1e5 Pa.",
-            PlausibilityWarning,
-        )
-
 
 def place_line(closure: Placed, in_cells: bool) -> Placed:
     """Return the closure with ``line_in_cells`` set to ``in_cells`` if it is None."""
@@ -215,16 +233,8 @@ def place_line(closure: Placed, in_cells: bool) -> Placed:
     return replace(closure, line_in_cells=in_cells) if open_line else closure  # type: ignore[type-var]
 
 
-def _check_closure(closure: Gumbel | SwiftStieber) -> None:
-    name = type(closure).__name__
-    check_cavity_pressure(name, closure.cavity_pressure)
-    require_number(f"{name}.cavity_shear", closure.cavity_shear, at_least=0.0, at_most=1.0, hint="it is a share.")
-    if closure.line_in_cells is not None or isinstance(closure, Gumbel):
-        object.__setattr__(closure, "line_in_cells", require_bool(f"{name}.line_in_cells", closure.line_in_cells))
-
-
 @dataclass(frozen=True, kw_only=True)
-class ElrodAdams(Closure):
+class ElrodAdams(_Ruptures):
     """Cavitation that conserves the oil: rupture and reformation, with the oil in the cavity remembered in time.
 
     For starved or grooved bearings, oscillating loads, and wherever leakage and friction of the cavity matter. In a
@@ -268,10 +278,6 @@ class ElrodAdams(Closure):
     line_in_cells: bool = False
 
     conserves_mass = True
-
-    def __post_init__(self) -> None:
-        check_cavity_pressure("ElrodAdams", self.cavity_pressure)
-        object.__setattr__(self, "line_in_cells", require_bool("ElrodAdams.line_in_cells", self.line_in_cells))
 
 
 class FilmSystem:
