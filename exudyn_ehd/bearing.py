@@ -200,6 +200,18 @@ class JournalBearing(Checked):
             POSITIVE, hint="it is bore radius minus journal radius; if yours is diametral, halve it."
         ),
         "squeeze": require_bool,
+        "lubricant": (Lubricant,),
+        "film": get_args(FilmOption),
+        "cavitation": get_args(Cavitation),
+        "inlet": get_args(Inlet),
+        "arc": (Arc, type(None)),
+        "contact": (RegularisedWall, type(None)),
+        "thermal": (LumpedThermal, FilmEnergy, type(None)),
+        "asperity": (GreenwoodTripp, type(None)),
+        "roughness": (PatirCheng, type(None)),
+        "wear": (ArchardWear, type(None)),
+        "turbulence": (NgPan, Hirs, type(None)),
+        "thrust": (ThrustFaces, type(None)),
     }
 
     def __post_init__(self) -> None:
@@ -211,8 +223,6 @@ class JournalBearing(Checked):
                 f"{self.radial_clearance!r} m at {self.journal_radius!r} m; lengths are in metres, "
                 "usual clearances a thousandth of the radius."
             )
-        for name, types in _OPTIONS.items():
-            require_type(f"JournalBearing.{name}", getattr(self, name), *types)
         for profile in self.profiles:
             require_type("JournalBearing.profile", profile, *get_args(SurfaceProfile))
         ends = require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
@@ -378,22 +388,6 @@ class JournalBearing(Checked):
         """
         area = 2.0 * self.journal_radius * self.length
         return area * self.lubricant.viscosity * abs(speed) / self.clearance_ratio**2
-
-
-_OPTIONS: dict[str, tuple[type, ...]] = {
-    "lubricant": (Lubricant,),
-    "film": get_args(FilmOption),
-    "cavitation": get_args(Cavitation),
-    "inlet": get_args(Inlet),
-    "arc": (Arc, type(None)),
-    "contact": (RegularisedWall, type(None)),
-    "thermal": (LumpedThermal, FilmEnergy, type(None)),
-    "asperity": (GreenwoodTripp, type(None)),
-    "roughness": (PatirCheng, type(None)),
-    "wear": (ArchardWear, type(None)),
-    "turbulence": (NgPan, Hirs, type(None)),
-    "thrust": (ThrustFaces, type(None)),
-}
 
 
 def _check_elastic(bearing: JournalBearing) -> None:

@@ -427,17 +427,22 @@ class Checked:
     Attributes
     ----------
     checks : mapping
-        Functions of ``Class.argument`` and value by argument, such as a partial `require_number`. An argument that is
-        None by default may stay so.
+        By argument: a function of ``Class.argument`` and value, such as a partial `require_number`, or the types of
+        which the value must be. An argument that is None by default may stay so.
     """
 
-    checks: ClassVar[Mapping[str, Callable[[str, Any], object]]] = {}
+    checks: ClassVar[Mapping[str, Callable[[str, Any], object] | tuple[type, ...]]] = {}
 
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):  # type: ignore[arg-type]
-            value = getattr(self, field.name)
-            if field.name in self.checks and not (value is None and field.default is None):
-                self.checks[field.name](f"{type(self).__name__}.{field.name}", value)
+            value, check = getattr(self, field.name), self.checks.get(field.name, ())
+            where = f"{type(self).__name__}.{field.name}"
+            if check == () or (value is None and field.default is None):
+                continue
+            if isinstance(check, tuple):
+                require_type(where, value, *check)
+            else:
+                check(where, value)
 
 
 def require_vector(where: str, value: Sequence[float] | np.ndarray, size: int, unit: str = "") -> np.ndarray:

@@ -7,14 +7,15 @@ import inspect
 import math
 
 import exudyn_ehd as ehd
-from exudyn_ehd.bearing import _OPTIONS
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.lubricant import lubricant
 from exudyn_ehd.plausible import ARGUMENTS, KINDS
 
 LAWS = {name: lubricant.LAWS[name][:-1] for name in ("pressure_law", "shear_law", "density_law")}
 
 # without the protocol of those that users write
-CAVITATION = _OPTIONS["cavitation"][:-1]
+OPTIONS = {name: types for name, types in JournalBearing.checks.items() if isinstance(types, tuple)}
+CAVITATION = OPTIONS["cavitation"][:-1]
 
 
 def specs():
@@ -52,6 +53,6 @@ def by_itself(spec):
 def options_of(module):
     """Options of a bearing (those of its lubricant under their own names) that a module defines, each by itself."""
     for option in (by_itself(spec) for spec in specs() if spec.__module__ == f"exudyn_ehd.{module}"):
-        for name, types in (_OPTIONS | LAWS).items():
+        for name, types in (OPTIONS | LAWS).items():
             if isinstance(option, types):
                 yield name, option

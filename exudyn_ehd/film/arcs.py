@@ -28,7 +28,7 @@ import numpy as np
 from exudyn_ehd.film.grid import FilmGrid, axial_metric, axial_vertices, rows_between, tensor_grid
 from exudyn_ehd.film.reynolds.gap import gap_slopes
 from exudyn_ehd.film.supply.rows import LEAST
-from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, ROUNDING, Checked, InputError, require_number, require_type
+from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, ROUNDING, Checked, InputError, require_number
 
 # Smallest extent of an arc, and of its parts before and behind a step, rad. Smaller values reduce the accuracy.
 SMALLEST_ARC = 0.05
@@ -130,11 +130,11 @@ class Arc(Checked):
         "trailing_pressure": require_number,
         "preload": partial(NOT_NEGATIVE, below=1.0, hint="it is 1 - assembled clearance / machined clearance."),
         "offset": partial(NOT_NEGATIVE, at_most=1.0, hint="0.5 is the middle of the arc."),
+        "dam": (Dam, type(None)),
     }
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_type("Arc.dam", self.dam, Dam, type(None))
         if self.step is not None and not self.step <= self.extent - SMALLEST_ARC:
             raise InputError(
                 f"Dam.extent must leave {SMALLEST_ARC:g} rad of the arc of {self.extent:g} rad behind the step, got "

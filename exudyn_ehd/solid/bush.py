@@ -134,11 +134,7 @@ class ANCFBush(_Solid):
     damping: Rayleigh | None = None
     parallel: bool = False
 
-    checks: ClassVar = {"parallel": require_bool}
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_type("ANCFBush.damping", self.damping, Rayleigh, type(None))
+    checks: ClassVar = {"parallel": require_bool, "damping": (Rayleigh, type(None))}
 
     def solid(self, mesh: BushMesh) -> TotalLagrange:
         """Return the solid on a mesh, which may have been moved to its place in the model."""

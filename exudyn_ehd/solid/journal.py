@@ -32,7 +32,7 @@ from exudyn_ehd.solid import pressure_modes as films
 from exudyn_ehd.solid.bush import ModalBush, require_tolerance
 from exudyn_ehd.solid.harmonics import Cylinder, interpolation
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
-from exudyn_ehd.status import NOT_NEGATIVE, Checked, InputError, require_bool, require_type, require_vector
+from exudyn_ehd.status import NOT_NEGATIVE, Checked, InputError, require_bool, require_vector
 from exudyn_ehd.storage import cached_arrays
 
 
@@ -130,12 +130,12 @@ class ElasticJournal(Checked):
         "inner_radius": partial(NOT_NEGATIVE, hint="0 is a solid pin."),
         "tolerance": require_tolerance,
         "tilted": require_bool,
+        "material": (SaintVenantKirchhoff,),
+        "held": (HeldEnds, HeldBands, type(None)),
     }
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_type("ElasticJournal.material", self.material, SaintVenantKirchhoff)
-        require_type("ElasticJournal.held", self.held, HeldEnds, HeldBands, type(None))
         object.__setattr__(self, "span", _place("ElasticJournal.span", self.span))
 
     @property

@@ -44,7 +44,6 @@ from exudyn_ehd.status import (
     require_bool,
     require_count,
     require_integer,
-    require_type,
     require_vector,
 )
 
@@ -236,6 +235,9 @@ class ThrustFaces(Checked):
         "n_r": partial(require_count, at_least=6),
         "lower": require_bool,
         "upper": require_bool,
+        "profile": (TaperLand, StepLand, type(None)),
+        "cavitation": (SwiftStieber, Gumbel, FullSommerfeld, Closure, type(None)),
+        "contact": (RegularisedWall, type(None)),
     }
 
     @property
@@ -250,10 +252,6 @@ class ThrustFaces(Checked):
                 f"ThrustFaces.inner_radius must be below 0.99 of the outer radius {self.outer_radius!r} m, got "
                 f"{self.inner_radius!r} m; the film is the ring between them."
             )
-        require_type("ThrustFaces.profile", self.profile, TaperLand, StepLand, type(None))
-        closures = SwiftStieber, Gumbel, FullSommerfeld, Closure
-        require_type("ThrustFaces.cavitation", self.cavitation, *closures, type(None))
-        require_type("ThrustFaces.contact", self.contact, RegularisedWall, type(None))
         for name in ("inner_pressures", "outer_pressures"):
             if getattr(self, name) is not None:
                 pressures = require_vector(f"ThrustFaces.{name}", getattr(self, name), 2, "Pa")

@@ -32,7 +32,6 @@ from exudyn_ehd.status import (
     InputError,
     require_count,
     require_number,
-    require_type,
     require_vector,
 )
 
@@ -140,6 +139,10 @@ class TiltingThrustPads(Checked):
         "crown": NOT_NEGATIVE,
         "n_theta": partial(require_count, at_least=8),
         "n_r": partial(require_count, at_least=6),
+        "lubricant": (Lubricant,),
+        "contact": (RegularisedWall, type(None)),
+        "cavitation": (SwiftStieber, Gumbel, FullSommerfeld, Closure),
+        "turbulence": (NgPan, Hirs, type(None)),
     }
 
     def __post_init__(self) -> None:
@@ -167,10 +170,6 @@ class TiltingThrustPads(Checked):
                 f"through the pivot, got {self.pad_inertia!r}."
             )
         object.__setattr__(self, "pad_inertia", tuple(inertia.tolist()))
-        require_type(f"{_NAME}.lubricant", self.lubricant, Lubricant)
-        require_type(f"{_NAME}.contact", self.contact, RegularisedWall, type(None))
-        require_type(f"{_NAME}.cavitation", self.cavitation, SwiftStieber, Gumbel, FullSommerfeld, Closure)
-        require_type(f"{_NAME}.turbulence", self.turbulence, NgPan, Hirs, type(None))
         check_shear_law(_NAME, self.lubricant)
         check_turbulence(_NAME, vars(self) | {"roughness": None, "thermal": None})
         left_out = ["cavitation=ElrodAdams(...)"] if self.cavitation.conserves_mass else []
