@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.compilation import FAST, I0, I1
+from exudyn_ehd.compilation import FAST, I1
 
 
 class FilmTerms(NamedTuple):
@@ -91,14 +91,6 @@ def oil_links(film, full):
 
 
 @njit(cache=True)
-def part(x, start, stop):
-    """Return a part of a field, flat; None for None."""
-    if x is None:
-        return None
-    return x.reshape(-1)[start:stop]
-
-
-@njit(cache=True)
 def flat(x):
     """Return a field, flat; None for None."""
     if x is None:
@@ -119,9 +111,13 @@ def carried_fill(fill, film):
 
 
 @njit(cache=True)
-def both(x, start, stop, there, end):
-    """Return the parts of a field at both ends of links; None for None."""
-    return part(x, start, stop), part(x, there, end)
+def next_values(x, step):
+    """Return the values of a field at the vertices ``step`` on, flat, those behind the last one at the first ones; None
+    for None."""
+    if x is None:
+        return None
+    values = x.reshape(-1)
+    return np.concatenate((values[step:], values[:step]))
 
 
 @njit(cache=True, fastmath=FAST)
@@ -140,12 +136,9 @@ def upstream(fx, fz, fill, rho):
 
     ``fill``: fill of the flows out of every vertex; ``rho``: density ratio; (n, m) each, or None if 1 everywhere.
     """
-    m, size = fx.shape[1], fx.size
-    last, e, up = size - m, size - 1, np.ones((2, size))
-    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-        fills, densities = both(fill, start, stop, there, end), both(rho, start, stop, there, end)
-        _upstream(part(fx, start, stop), *fills, *densities, up[0, start:stop])
-    _upstream(part(fz, I0, e), *both(fill, I0, e, I1, size), *both(rho, I0, e, I1, size), up[1, :e])
+    up = np.ones((2, fx.size))
+    for f, step, out in ((fx, fx.shape[1], up[0]), (fz, 1, up[1])):
+        _upstream(f.reshape(-1), flat(fill), next_values(fill, step), flat(rho), next_values(rho, step), out)
     return up
 
 
@@ -174,32 +167,19 @@ def film_balance(P, fill, rho, film, out):
 
     ``fill``, ``rho``: None if they are 1 everywhere.
     """
-    n, m = P.shape
-    size = n * m
-    last, e, p, q = size - m, size - 1, P.reshape(-1), out.reshape(-1)
-    kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
-    up = upstream(film.fx, film.fz, carried_fill(fill, film), rho)
-    along, across = np.empty(size + m), np.empty(size + 1)
-    _link_flows(kx[:last], fx[:last], p[:last], p[m:], up[0, :last], along[m:size])
-    _link_flows(kx[last:], fx[last:], p[last:], p[:m], up[0, last:], along[size:])
-    for j in range(m):
-        along[j] = along[size + j]
+    m, size, p = P.shape[1], P.size, P.reshape(-1)
+    up, along, across = upstream(film.fx, film.fz, carried_fill(fill, film), rho), np.empty(size), np.empty(size)
+    _link_flows(film.kx.reshape(-1), film.fx.reshape(-1), p, next_values(P, m), up[0], along)
     # nothing flows over the last row's links in z
-    _link_flows(kz[:e], fz[:e], p[:e], p[1:], up[1, :e], across[1:size])
-    across[0] = across[size] = 0.0
-    _gather_flows(
+    _link_flows(film.kz.reshape(-1), film.fz.reshape(-1), p, next_values(P, 1), up[1], across)
+    area, grow, known, kept = (
         film.area.reshape(-1),
         film.grow.reshape(-1),
         film.known.reshape(-1),
         film.kept.reshape(-1),
-        flat(fill),
-        flat(rho),
-        across[1:],
-        across[:size],
-        along[m:],
-        along[:size],
-        q,
     )
+    flows = across, next_values(across, size - 1), along, next_values(along, size - m)
+    _gather_flows(area, grow, known, kept, flat(fill), flat(rho), *flows, out.reshape(-1))
 
 
 @njit(cache=True, fastmath=FAST)
@@ -267,52 +247,26 @@ def film_slopes(fill, full, rho, rho_P, film, slopes):
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
-def _pressure_flow(P_a, P_b, metric, h_a, h_b, E_a, E_b, g, g_h, by_h, by_d):
-    """Set the derivatives of the pressure flow to h and d. Each loop has one result, so that it is vectorised."""
-    for c in range(by_h.size):
-        h = 0.5 * (h_a[c] + h_b[c])
-        slope = 3.0 * h * h
-        if g is not None:
-            slope = g_h[c]
-        if E_a is not None:
-            half_ratio = 0.5 * (E_b[c] - E_a[c]) / h
-            square = h * h
-            if g is not None:
-                square = g[c] / h
+def _derive_links(axis, p, p_on, h_a, h_b, E, E_on, laws, up, metric, v, by, by_speed):
+    """Set the results of `link_derivatives` for the links along one axis, flat; the flow's derivative to vx through the
+    conductance is added."""
+    by_h, by_d, by_own, by_vx = by[2 * axis], by[2 * axis + 1], by_speed[axis], by_speed[2 * axis]
+    if laws is not None:
+        g, g_h, g_v = laws[axis][0].reshape(-1), laws[axis][1].reshape(-1), laws[axis][2].reshape(-1)
+        carriers, carriers_h = laws[axis][3].reshape(-1), laws[axis][4].reshape(-1)
+    for c in range(p.size):
+        h, drop, moved = 0.5 * (h_a[c] + h_b[c]), metric[axis, c] * (p[c] - p_on[c]), metric[axis + 2, c] * up[axis, c]
+        slope, square, carrier, carrier_h, half_ratio = 3.0 * h * h, h * h, h, 1.0, 0.0
+        if laws is not None:
+            slope, square, carrier, carrier_h = g_h[c], g[c] / h, carriers[c], carriers_h[c]
+        if E is not None:
+            half_ratio = 0.5 * (E_on[c] - E[c]) / h
             slope += (slope - 2.0 * square) * half_ratio * half_ratio
-        by_h[c] = -metric[c] * (P_b[c] - P_a[c]) * slope
-    if E_a is not None:
-        for c in range(by_d.size):
-            h = 0.5 * (h_a[c] + h_b[c])
-            base = h
-            if g is not None:
-                base = g[c] / (h * h)
-            by_d[c] = -metric[c] * (P_b[c] - P_a[c]) * base * (E_b[c] - E_a[c])
-
-
-@njit(cache=True, fastmath=FAST)
-def _couette_flow(v, width, carrier, c_h, h_a, h_b, up, by_h, by_own):
-    """Add the derivative of the Couette flow to h, and set its derivative to the speed along the link."""
-    for c in range(by_h.size):
-        slope = v * width[c] * up[c]
-        if c_h is not None:
-            slope *= c_h[c]
-        by_h[c] += slope
-    for c in range(by_own.size):
-        flow = 0.5 * (h_a[c] + h_b[c])
-        if carrier is not None:
-            flow = carrier[c]
-        by_own[c] = width[c] * flow * up[c]
-
-
-@njit(cache=True, fastmath=FAST, error_model="numpy")
-def _pressure_flow_by_speed(P_a, P_b, metric, h_a, h_b, E_a, E_b, g_v, by_vx):
-    """Add the derivative of the pressure flow to vx."""
-    for c in range(by_vx.size):
-        half_ratio = 0.0
-        if E_a is not None:
-            half_ratio = (E_b[c] - E_a[c]) / (h_a[c] + h_b[c])
-        by_vx[c] -= metric[c] * g_v[c] * (1.0 + half_ratio * half_ratio) * (P_b[c] - P_a[c])
+            by_d[c] = 2.0 * drop * square * half_ratio
+        by_h[c] = drop * slope + v * moved * carrier_h
+        by_own[c] = moved * carrier
+        if laws is not None:
+            by_vx[c] += drop * g_v[c] * (1.0 + half_ratio * half_ratio)
 
 
 @njit(cache=True)
@@ -338,31 +292,8 @@ def link_derivatives(P, H, HF, E, up, laws, metric, vx, vz, by, by_speed):
     by_speed : (3, n m) array
         Derivatives of the links in theta to vx, and of those in z to vz and to vx.
     """
-    m, size, p, h, h_x = P.shape[1], P.size, P.reshape(-1), H.reshape(-1), HF.reshape(-1)
-    last, e, width = size - m, size - 1, metric.reshape(4, size)
-    if laws is None:
-        g_x = g_x_h = c_x = c_x_h = g_z = g_z_h = c_z = c_z_h = None
-    else:
-        (g_x, g_x_h, g_x_v, c_x, c_x_h), (g_z, g_z_h, g_z_v, c_z, c_z_h) = laws
-    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-        at, law = h_x[start:stop], (part(g_x, start, stop), part(g_x_h, start, stop))
-        deflections, out = (part(E, start, stop), part(E, there, end)), (by[0, start:stop], by[1, start:stop])
-        _pressure_flow(p[start:stop], p[there:end], width[0, start:stop], at, at, *deflections, *law, *out)
-    _couette_flow(vx, width[2], flat(c_x), flat(c_x_h), h_x, h_x, up[0], by[0], by_speed[0])
-    law, deflections = (part(g_z, I0, e), part(g_z_h, I0, e)), (part(E, I0, e), part(E, I1, size))
-    _pressure_flow(p[:e], p[1:], width[1, :e], h[:e], h[1:], *deflections, *law, by[2, :e], by[3, :e])
-    law, out = (part(c_z, I0, e), part(c_z_h, I0, e)), (by[2, :e], by_speed[1, :e])
-    _couette_flow(vz, width[3, :e], *law, h[:e], h[1:], up[1, :e], *out)
-    for c in range(size):
-        by_speed[2, c] = 0.0
-    if laws is not None:
-        for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
-            at, deflections = h_x[start:stop], (part(E, start, stop), part(E, there, end))
-            by_v, out = part(g_x_v, start, stop), by_speed[0, start:stop]
-            _pressure_flow_by_speed(p[start:stop], p[there:end], width[0, start:stop], at, at, *deflections, by_v, out)
-        deflections = part(E, I0, e), part(E, I1, size)
-        _pressure_flow_by_speed(
-            p[:e], p[1:], width[1, :e], h[:e], h[1:], *deflections, part(g_z_v, I0, e), by_speed[2, :e]
-        )
-    # there are no links behind the last row
-    by[2, e] = by[3, e] = by_speed[1, e] = 0.0
+    m, p, h, h_x, width = P.shape[1], P.reshape(-1), H.reshape(-1), HF.reshape(-1), metric.reshape(4, P.size)
+    by_speed[2] = 0.0
+    out = by, by_speed
+    _derive_links(0, p, next_values(P, m), h_x, h_x, flat(E), next_values(E, m), laws, up, width, vx, *out)
+    _derive_links(1, p, next_values(P, 1), h, next_values(H, 1), flat(E), next_values(E, 1), laws, up, width, vz, *out)
