@@ -238,8 +238,10 @@ def _ends(by_h, by_d, a, b, follows, gap):
     """Return the derivatives of a link's flow to the undeformed gaps at its ends a and b.
 
     ``by_h``, ``by_d``: derivatives to the link's gap and to d, see `exudyn_ehd.film.reynolds.balance`. Row
-    ``gap`` of ``follows`` is the derivative of the gap to the undeformed one, row 1 that of E.
+    ``gap`` of ``follows`` is the derivative of the gap to the undeformed one, row 1 that of E. None: rigid surfaces.
     """
+    if follows is None:
+        return 0.5 * by_h, 0.5 * by_h
     here, there = by_h * follows[gap, a] - by_d * follows[1, a], by_h * follows[gap, b] + by_d * follows[1, b]
     return 0.5 * here, 0.5 * there
 
@@ -258,40 +260,26 @@ def link_rows(order, count, m, by, by_speed, follows, storage, out):
     storage : two (n, m) arrays
         Derivatives of the storage to the gap's rate and to the gap.
     """
-    rate, stored, size, start = storage[0].reshape(-1), storage[1].reshape(-1), by.shape[1], 0
+    rate, stored, size = storage[0].reshape(-1), storage[1].reshape(-1), by.shape[1]
     for r in range(count):
         c = order[r]
-        j = c - start
-        if j < 0 or j >= m:  # rows of a column follow each other: one division per column
-            j = c % m
-            start = c - j
-        back = c - m if c >= m else c - m + size
+        on, up = c + m if c + m < size else c + m - size, c + 1 if c + 1 < size else 0
+        back, down = c - m if c >= m else c - m + size, c - 1 if c > 0 else size - 1
         face, before, own = by[0, c], by[0, back], stored[c]
-        vx, vz = by_speed[0, c] - by_speed[0, back], 0.0
-        out[3, r] = out[4, r] = out[8, r] = out[9, r] = 0.0
+        out[8, r] = out[9, r] = 0.0
         if follows is not None:
             face, before = face * follows[3, c], before * follows[3, back]
-            here, there = _ends(face, by[1, c], c, c + m if c + m < size else c + m - size, follows, 0)
+            here, there = _ends(face, by[1, c], c, on, follows, 0)
             behind, at = _ends(before, by[1, back], back, c, follows, 0)
             own += here - at
             out[8, r], out[9, r] = there, -behind
-        if j + 1 < m:
-            here, there = 0.5 * by[2, c], 0.5 * by[2, c]
-            if follows is not None:
-                here, there = _ends(by[2, c], by[3, c], c, c + 1, follows, 2)
-            own += here
-            out[3, r] = there
-            vx += by_speed[2, c]
-            vz += by_speed[1, c]
-        if j > 0:
-            behind, at = 0.5 * by[2, c - 1], 0.5 * by[2, c - 1]
-            if follows is not None:
-                behind, at = _ends(by[2, c - 1], by[3, c - 1], c - 1, c, follows, 2)
-            own -= at
-            out[4, r] = -behind
-            vx -= by_speed[2, c - 1]
-            vz -= by_speed[1, c - 1]
-        out[0, r], out[1, r], out[2, r], out[5, r], out[6, r], out[7, r] = face, -before, own, rate[c], vx, vz
+        # the derivatives of links in z beyond the ends are 0
+        here, there = _ends(by[2, c], by[3, c], c, up, follows, 2)
+        behind, at = _ends(by[2, down], by[3, down], down, c, follows, 2)
+        out[0, r], out[1, r], out[2, r], out[3, r], out[4, r] = face, -before, own + here - at, there, -behind
+        out[5, r] = rate[c]
+        out[6, r] = by_speed[0, c] - by_speed[0, back] + by_speed[2, c] - by_speed[2, down]
+        out[7, r] = by_speed[1, c] - by_speed[1, down]
 
 
 @njit(cache=True, fastmath=FAST)

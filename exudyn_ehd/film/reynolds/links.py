@@ -50,6 +50,7 @@ from numba import njit
 
 from exudyn_ehd.compilation import FAST, U0, U1, unsigned
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.reynolds.balance import next_values
 
 
 class LinkFlux(NamedTuple):
@@ -244,18 +245,17 @@ def link_metric(grid: FilmGrid, flow_x: float) -> np.ndarray:
 
 
 @njit(cache=True, fastmath=FAST)
-def _set_along(h_a, h_b, g, carrier, metric, width, v, k_out, f_out):
-    for c in range(k_out.size):
+def _set_along(axis, h_a, h_b, flow, metric, v, terms):
+    """Set the results of `set_links` for the links along one axis, flat."""
+    k, f = terms[axis], terms[axis + 2]
+    if flow is not None:
+        conductances, carriers = flow[axis].reshape(-1), flow[axis + 2].reshape(-1)
+    for c in range(k.size):
         h = 0.5 * (h_a[c] + h_b[c])
-        conducts = h * h * h
-        if g is not None:
-            conducts = g[c]
-        k_out[c] = metric[c] * conducts
-    for c in range(f_out.size):
-        carried = 0.5 * (h_a[c] + h_b[c])
-        if carrier is not None:
-            carried = carrier[c]
-        f_out[c] = v * width[c] * carried
+        conducts, carried = h * h * h, h
+        if flow is not None:
+            conducts, carried = conductances[c], carriers[c]
+        k[c], f[c] = metric[axis, c] * conducts, v * metric[axis + 2, c] * carried
 
 
 @njit(cache=True)
@@ -264,16 +264,9 @@ def set_links(H, HF, flow, metric, vx, vz, terms):
 
     ``flow``: `LinkFlux.flow`, None for a plain film; ``metric``: `link_metric`.
     """
-    e, h, h_x = H.size - 1, H.reshape(-1), HF.reshape(-1)
     by, out = metric.reshape(4, H.size), terms.reshape(len(terms), H.size)
-    if flow is None:
-        _set_along(h_x, h_x, None, None, by[0], by[2], vx, out[0], out[2])
-        _set_along(h[:e], h[1:], None, None, by[1, :e], by[3, :e], vz, out[1, :e], out[3, :e])
-    else:
-        gx, gz, cx, cz = flow
-        _set_along(h_x, h_x, gx.reshape(-1), cx.reshape(-1), by[0], by[2], vx, out[0], out[2])
-        z = gz.reshape(-1)[:e], cz.reshape(-1)[:e]
-        _set_along(h[:e], h[1:], z[0], z[1], by[1, :e], by[3, :e], vz, out[1, :e], out[3, :e])
+    _set_along(0, HF.reshape(-1), HF.reshape(-1), flow, by, vx, out)
+    _set_along(1, H.reshape(-1), next_values(H, 1), flow, by, vz, out)
 
 
 @njit(cache=True, fastmath=FAST)

@@ -308,7 +308,9 @@ def test_a_starved_pocket_is_told():
     assert film.supply_flows[0] > 1e-9
     given = build_model(ehd.JournalBearing(**SIZE, film=GRID, supply=(dataclasses.replace(pocket, supply=None),)))
     starved = build_model(bearing)
-    np.testing.assert_allclose(*(m.evaluate(film.motion).tangent() for m in (starved, given)), rtol=1e-10, atol=1e-9)
+    tangents = (m.evaluate(film.motion).tangent() for m in (starved, given))
+    # moments that vanish by symmetry: round-off of a sum whose terms are some 1e6 N
+    np.testing.assert_allclose(*tangents, rtol=1e-10, atol=1e-8)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         ehd.steady(bearing, **state | {"direction": 4.0})
