@@ -23,9 +23,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.compilation import FAST, I1, I4, NO, U0, U1, U2, YES, unsigned
-
-_FUSE = {"contract", "nsz", "arcp"}
+from exudyn_ehd.compilation import FAST, FUSED, I1, I4, NO, U0, U1, U2, YES, unsigned
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -78,7 +76,7 @@ def _solve_rows(forward, backward, scale_forth, scale_back, inverse, count, widt
             x[k, r] = own[r]
 
 
-@njit(cache=True, fastmath=_FUSE)
+@njit(cache=True, fastmath=FUSED)
 def _solve_one(col, row, stride, scale_forth, scale_back, inverse, count, width, x):
     """Solve for one right-hand side x (count,), with the rows of F and G in flat arrays, ``stride`` apart."""
     step, size, w = unsigned(stride), unsigned(count), unsigned(width)
@@ -109,7 +107,7 @@ def _solve_one(col, row, stride, scale_forth, scale_back, inverse, count, width,
         x[i] = s * inverse[i] if scale_back else s
 
 
-@njit(cache=True, fastmath=_FUSE)
+@njit(cache=True, fastmath=FUSED)
 def _solve_four(col, row, stride, scale_forth, scale_back, inverse, count, width, x0, x1, x2, x3):
     """Solve as `_solve_one`, for four right-hand sides at once."""
     step, size, w = unsigned(stride), unsigned(count), unsigned(width)
