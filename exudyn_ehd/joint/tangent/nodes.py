@@ -20,7 +20,7 @@ forces is spread over the nodes as ``a + b x r``, with a and b from force and mo
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags, eye_array
+from scipy.sparse import csr_matrix, diags, eye_array, kron
 
 from exudyn_ehd.film.banded.substitution import TILE
 from exudyn_ehd.film.grid import FilmGrid
@@ -92,16 +92,9 @@ def slope_matrices(grid: FilmGrid) -> tuple[csr_matrix, csr_matrix]:
 
     The differences of `exudyn_ehd.film.reynolds.gap.gap_slopes`.
     """
-    n, m = grid.shape
-    at = np.arange(n * m).reshape(n, m)
-    half = np.full(n * m, 0.5 / grid.width_x[0])
-    nxt, prv = np.roll(at, -1, axis=0).ravel(), np.roll(at, 1, axis=0).ravel()
-    rows = np.tile(at.ravel(), 2)
-    along = csr_matrix((np.concatenate((half, -half)), (rows, np.concatenate((nxt, prv)))), shape=(n * m, n * m))
-    line = grid.differences_z
-    j, k = np.nonzero(line)
-    across = csr_matrix((np.tile(line[j, k], n), (at[:, j].ravel(), at[:, k].ravel())), shape=(n * m, n * m))
-    return along, across
+    ring, line = np.eye(grid.x.size), np.eye(grid.z.size)
+    around = (np.roll(ring, 1, axis=1) - np.roll(ring, -1, axis=1)) / (2.0 * grid.width_x[0])
+    return csr_matrix(kron(around, line)), csr_matrix(kron(ring, grid.differences_z))
 
 
 def traction(film: SolvedFilm, forces: BoreForces) -> np.ndarray:

@@ -345,12 +345,9 @@ def _to_true_gap(film: SolvedFilm, gradients: Gradients) -> Gradients:
 
 def shear_of_fills(film: SolvedFilm) -> np.ndarray:
     """Couette shear (n, m) per fill of every vertex."""
-    return ratio_of(film) * film.grid.shear_weight / film.solver.H + shear_of_ends(film)
-
-
-def shear_of_ends(film: SolvedFilm) -> np.ndarray:
-    """Shear density of the ends, at the neighbouring vertices (n, m) whose fill they have."""
-    return at_beside_ends(film.solver.system, ratio_of(film) * film.grid.shear_weight / film.solver.H)
+    shear: np.ndarray = ratio_of(film) * film.grid.shear_weight / film.solver.H
+    # ends have the fill of the neighbouring vertices
+    return shear + at_beside_ends(film.solver.system, shear)
 
 
 def ratio_of(film: SolvedFilm) -> np.ndarray:
