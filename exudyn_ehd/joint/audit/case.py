@@ -276,7 +276,7 @@ class Case:
         for count in range(MOST_FILMS):
             motion[:k] = place + step
             try:
-                reached = _straight(steady, other, motion.copy()) if count > 0 else steady(motion.copy())
+                reached = steady(motion.copy())
             except FilmError:
                 reached = None
             left = np.full(k, math.inf)
@@ -311,17 +311,6 @@ class Case:
             return None
         with_it, without_it = (_seconds(m, states) for m, states in zip((model, plain), zip(*both), strict=True))
         return max(0.0, 1.0 - without_it / with_it)
-
-
-def _straight(steady: Callable[[np.ndarray], Evaluation], model: BearingModel, motion: np.ndarray) -> Evaluation:
-    """Evaluate a steady film; a flexible bore gives up where Newton's method has to halve a step."""
-    if not isinstance(model, ElasticBearingModel):
-        return steady(motion)
-    model.elasticity.straight = True
-    try:
-        return steady(motion)
-    finally:
-        model.elasticity.straight = False
 
 
 def _known_to(model: BearingModel, motion: np.ndarray) -> np.ndarray:

@@ -32,8 +32,8 @@ LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE, MOVING_STEPS, MOVING_TOLERANCE = 60,
 # Pseudo-transient continuation of a viscous bore: tau / h at its start; tau / h at which it fails; relative change of q
 # in a step from which on Newton's method is tried; number of film solves after which it is not begun or ends.
 SLOWEST, LARGEST_SLOWNESS, NEAR, LARGEST_EFFORT = 10.0, 1e9, 0.02, 600
-# Largest number of film solves of a whole search, and of one that ends where Newton's method has to halve a step.
-LARGEST_WAY, STRAIGHT_WAY = 3000, 60
+# Largest number of film solves of a whole search.
+LARGEST_WAY = 3000
 
 
 class Elasticity:
@@ -55,12 +55,9 @@ class Elasticity:
     reached : float, (k,) array
         Largest fraction of the prescribed eccentricity and tilt with an equilibrium in the last `settle`, and the
         bore's coordinates there.
-    straight : bool
-        True: `settle` fails where Newton's method has to halve a step. For searches that then shorten their own step.
     """
 
     failure = ""
-    straight = False
 
     def __init__(self, stiffness: np.ndarray, load: np.ndarray | float = 0.0) -> None:
         self.stiffness, self.load, self.reached = stiffness, load, (0.0, np.zeros(0))
@@ -145,10 +142,10 @@ def bore_equilibrium(
     undeformed bore. Returns the evaluation or None, and the largest fraction of eccentricity and tilt with an
     equilibrium, with its coordinates (k,).
     """
-    newton, most = Newton(model, motion, film), STRAIGHT_WAY if model.elasticity.straight else LARGEST_WAY
+    newton = Newton(model, motion, film)
     found = newton.solve(start, 1.0, straight=True) if start.any() else None
     reached, part, q, rate = 0.0, 1.0, np.zeros_like(start), np.zeros_like(start)
-    while found is None and part > SMALLEST_PART and newton.trials < most:
+    while found is None and part > SMALLEST_PART and newton.trials < LARGEST_WAY:
         target = min(1.0, reached + part)
         near = newton.settle(q + (target - reached) * rate, target)
         if near is None:
@@ -173,7 +170,7 @@ class Newton(Generic[Result]):
     def settle(self, q: np.ndarray, part: float) -> Result | None:
         """Find the balance by full Newton steps from q; else by the motion of a viscous bore; else by halved steps."""
         found = self.solve(q, part, straight=True)
-        if found is None and self.trials < LARGEST_EFFORT and not self.model.elasticity.straight:
+        if found is None and self.trials < LARGEST_EFFORT:
             found = self._come_to_rest(q, part) or self.solve(q, part)
         return found
 
