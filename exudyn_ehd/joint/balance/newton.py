@@ -31,22 +31,20 @@ import numpy as np
 from numpy.linalg import norm
 
 from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, outside_table, require_oil_bears, seized
+from exudyn_ehd.joint.bore.equilibrium import HALVINGS, SETTLED
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, seen_by_faces
 from exudyn_ehd.status import ROUNDING, SMALL, FilmError, Status
 
-# Tolerance of the temperature's change in a search, as a share of the film's rise over its coldest source. Larger:
-# fewer rounds, less accurate temperatures. A search that round-off stops before is accepted up to `ROUNDING`.
-SETTLED = 1e-11
+# Tolerance of the unbalance, as a share of the load. A temperature's change, as a share of the film's rise over its
+# coldest source, has the tolerance `SETTLED`, or `ROUNDING` where round-off stops the search before.
 LOAD_TOLERANCE = 1e-10
 # Largest number of rounds of a search; number of rounds from a film nearby, and of rounds in a row whose error does not
 # fall below `FALLS` times the smallest error. Larger: a hopeless search gives up later; smaller: slow ones fail.
 ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
 # Damping factor of the temperature's steps, below which a search without progress gives up.
 WEAKEST = 0.1
-# Largest number of halvings of a step that leads to no film, and of moves of the first position towards the centre.
-HALVINGS = 8
 # Largest number of film solves of one search. A round takes some ten of them on a flexible bore. Larger: a hopeless
 # search takes longer.
 LARGEST_EFFORT = 6000

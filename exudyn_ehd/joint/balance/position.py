@@ -13,7 +13,6 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief
 from exudyn_ehd.joint.balance.limits import HOTTEST, WAY_OUT, hottest, is_above, too_hot
 from exudyn_ehd.joint.balance.newton import (
-    HALVINGS,
     LOAD_TOLERANCE,
     PATIENCE,
     ROUNDS,
@@ -21,7 +20,8 @@ from exudyn_ehd.joint.balance.newton import (
     Place,
     gaps_of_arcs,
 )
-from exudyn_ehd.status import FilmError, InputError, warn_user
+from exudyn_ehd.joint.bore.equilibrium import HALVINGS
+from exudyn_ehd.status import SMALL, FilmError, InputError, warn_user
 
 # Eccentricity ratio, in the direction of the load, from which a second search by damped steps starts. Larger: thinner
 # gaps and larger cavities at the start, with which damped steps fail more often.
@@ -303,8 +303,6 @@ def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: 
 # Eccentricity ratio, in the direction of the load, from which another position is searched. Larger: nearer to a closed
 # gap.
 LOADED = 0.9
-# Distance over the clearance up to which two positions count as the same.
-SAME_PLACE = 1e-3
 STEADINESS = (
     "has a negative determinant: a journal does not stay there",
     "is not positive definite: the damping decides whether a journal stays",
@@ -337,7 +335,7 @@ def steadiest(search: LoadSearch, found: Place) -> Place:
         if other is None:
             continue
         away = min(float(np.hypot(*(other.motion - place.motion)[:2])) for place in places)
-        if away > SAME_PLACE * b.radial_clearance:
+        if away > SMALL * b.radial_clearance:
             places.append(other)
     best = max(places, key=_steadiness)
     if len(places) > 1 or _steadiness(best) == 0:

@@ -21,17 +21,23 @@ import numpy as np
 
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import ROUNDING, Status
 
 # Continuation to the prescribed position: smallest step, below which it fails, and growth of the step after a success.
 # Smaller, and nearer to 1: slower, fails less often.
 SMALLEST_PART, LONGER = 1e-4, 1.5
-# Largest number of Newton's steps, and tolerance of the residual over the load: for an equilibrium, and for a step of a
-# viscous bore.
-LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE, MOVING_STEPS, MOVING_TOLERANCE = 60, 1e-11, 10, 1e-5
-# Pseudo-transient continuation of a viscous bore: tau / h at its start; tau / h at which it fails; relative change of q
-# in a step from which on Newton's method is tried; number of film solves after which it is not begun or ends.
-SLOWEST, LARGEST_SLOWNESS, NEAR, LARGEST_EFFORT = 10.0, 1e9, 0.02, 600
+# Largest number of Newton's steps: for an equilibrium, and for a step of a viscous bore. Larger: hopeless searches take
+# longer.
+SETTLING_STEPS, MOVING_STEPS = 60, 10
+# Tolerance of searches for steady states: residual over the load, change of a temperature over the film's rise. Larger:
+# fewer films, less accurate states. A residual that round-off keeps from falling is accepted up to `ROUNDED`.
+SETTLED, ROUNDED = 1e-11, 1e-8
+# Largest number of halvings of a step. Larger: a hopeless search takes longer.
+HALVINGS = 12
+# Pseudo-transient continuation of a viscous bore: tau / h at its start; relative change of q in a step from which on
+# Newton's method is tried; number of film solves after which it is not begun or ends. It fails at a step h of less than
+# `ROUNDING` times tau.
+SLOWEST, NEAR, LARGEST_EFFORT = 10.0, 0.02, 600
 # Largest number of film solves of a whole search.
 LARGEST_WAY = 3000
 
@@ -176,7 +182,7 @@ class Newton(Generic[Result]):
 
     def _come_to_rest(self, q: np.ndarray, part: float) -> Result | None:
         slowness, start = SLOWEST, self.trials
-        while slowness < LARGEST_SLOWNESS and self.trials - start < LARGEST_EFFORT:
+        while slowness * ROUNDING < 1.0 and self.trials - start < LARGEST_EFFORT:
             near = self.solve(q, part, slowness)
             if near is None:
                 slowness *= 4.0
@@ -201,20 +207,17 @@ class Newton(Generic[Result]):
         evaluation = model.evaluate(full, *self.film)
         if evaluation.status is not Status.CONVERGED:
             return None
-        steps, tolerance = (
-            (MOVING_STEPS, MOVING_TOLERANCE) if slowness else (LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE)
-        )
         scale = max(float(np.linalg.norm(evaluation.bore.load)), 1e-300)
         residual = evaluation.bore.load + elasticity.load - elasticity.force(q)
         error, last = float(np.linalg.norm(residual)), np.inf
-        for _ in range(steps):
+        for _ in range(MOVING_STEPS if slowness else SETTLING_STEPS):
             # stop at the tolerance, or if round-off keeps a converged residual from falling
-            if error <= tolerance * scale or (error <= 1e-8 * scale and error > 0.5 * last):
+            if error <= SETTLED * scale or (error <= ROUNDED * scale and error > 0.5 * last):
                 return evaluation
             softening = evaluation.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
             step = elasticity.solve(softening / held, residual / held)
             last = error
-            for _ in range(1 if straight else 12):
+            for _ in range(1 if straight else HALVINGS):
                 full[MOTION_SIZE : MOTION_SIZE + k] = q + step
                 evaluation = model.evaluate(full, *self.film)
                 self.trials += 1
@@ -222,7 +225,7 @@ class Newton(Generic[Result]):
                     resisted = elasticity.force(q + step) + elasticity.force(q + step - old) * slowness
                     residual = evaluation.bore.load + elasticity.load - resisted
                     error = float(np.linalg.norm(residual))
-                    if error < 2.0 * last or error <= 1e-8 * scale:
+                    if error < 2.0 * last or error <= ROUNDED * scale:
                         break
                 step = 0.5 * step
             else:

@@ -19,7 +19,10 @@ from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import SuperLU
 
 from exudyn_ehd.joint.bore.equilibrium import (
-    SETTLING_TOLERANCE,
+    HALVINGS,
+    ROUNDED,
+    SETTLED,
+    SETTLING_STEPS,
     SMALLEST_PART,
     Elasticity,
     FilmOnBore,
@@ -28,19 +31,13 @@ from exudyn_ehd.joint.bore.equilibrium import (
 )
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.solid.total_lagrange import TotalLagrange, sparse_factor
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import SMALL, Status
 
-# Residual over the film's forces that counts as balanced if it does not fall further because of round-off.
-ROUNDING = 1e-8
 # Contraction rates of the corrections: above the first the solid is linearised again; up to the second and the third
 # the present K is used for an approximate and for an exact tangent. Smaller: more factors, more accurate tangents.
 SLOWEST, NEARBY, EXACT = 0.3, 0.05, 1e-3
-# Largest number of corrections by one K, and of linearisations in a search; largest number of halvings of a step.
-CORRECTIONS, HALVINGS = 40, 8
 # Number of unit loads that are solved for at once. Larger: more memory.
 COLUMNS = 256
-# Stiffness of held nodes of the bore over the largest stiffness of the others. Smaller: held nodes move more.
-HELD = 1e6
 NO_BALANCE = (
     "the solid finds no balance with the film's load, which may lie above a limit point; take NeoHooke(...) for "
     "strains beyond a few per cent, a finer mesh, a thicker wall, or less load."
@@ -125,7 +122,7 @@ class SolidElasticity(Elasticity):
         """Find the balance directly, else by continuation of the pose from that of the present displacements."""
         reached, part = 0.0, 1.0
         between = motion.copy()
-        while part > SMALLEST_PART and self._linearised < CORRECTIONS:
+        while part > SMALLEST_PART and self._linearised < SETTLING_STEPS:
             target, before = min(1.0, reached + part), self.displacements
             between[:4] = (1.0 - target) * self._pose + target * motion[:4]
             near = self._balance(model, between, film, start)
@@ -153,7 +150,7 @@ class SolidElasticity(Elasticity):
                     if balanced is not None:
                         self.failure = self.solid.inversion(self.displacements)
                         return None if self.failure else balanced
-                if self._linearised >= CORRECTIONS:
+                if self._linearised >= SETTLING_STEPS:
                     break
                 self._renew()
                 start = self._coordinates(self.displacements)
@@ -187,7 +184,7 @@ class SolidElasticity(Elasticity):
         for _ in range(HALVINGS):
             self.displacements = u + part * step
             after = float(np.linalg.norm(self._free_part(load - self.solid.force(self.displacements))))
-            if after < 2.0 * before or after <= ROUNDING * np.linalg.norm(load):
+            if after < 2.0 * before or after <= ROUNDED * np.linalg.norm(load):
                 return part == 1.0
             part *= 0.5
         raise LinAlgError
@@ -201,9 +198,9 @@ class SolidElasticity(Elasticity):
         factor = lu_factor(self.stiffness - S)
         lack, size = self._lack(self.displacements, evaluation)
         error, last = float(np.linalg.norm(lack)), np.inf
-        for _ in range(CORRECTIONS):
-            rounded = error <= ROUNDING * size
-            if error <= SETTLING_TOLERANCE * size or (rounded and error > 0.5 * last):
+        for _ in range(SETTLING_STEPS):
+            rounded = error <= ROUNDED * size
+            if error <= SETTLED * size or (rounded and error > 0.5 * last):
                 return evaluation
             if not rounded and error > SLOWEST * last:
                 break
@@ -255,8 +252,8 @@ class SolidElasticity(Elasticity):
         inner = np.linalg.inv(bore)
         if self._moves.all():
             return 0.5 * (inner + inner.T)
-        # held nodes get a large stiffness that is not coupled to the others
-        stiffness = np.diag(np.where(self._moves, 0.0, HELD * np.abs(np.diag(inner)).max()))
+        # held nodes get a large stiffness that is not coupled to the others: they move by a `SMALL` share of these
+        stiffness = np.diag(np.where(self._moves, 0.0, np.abs(np.diag(inner)).max() / SMALL))
         stiffness[np.ix_(self._moves, self._moves)] = 0.5 * (inner + inner.T)
         return stiffness
 

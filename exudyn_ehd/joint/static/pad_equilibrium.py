@@ -29,21 +29,17 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.joint.balance.newton import FALLS, PATIENCE, ROUNDS
+from exudyn_ehd.joint.bore.equilibrium import SETTLED
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.joint.static.pads import Pad, PadLoads, TiltingPads, open_tilts
 from exudyn_ehd.joint.static.steady import SteadyResult, result_at
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import SMALL, FilmError, InputError, require_number, warn_user
+from exudyn_ehd.status import ROUNDING, SMALL, FilmError, InputError, require_number, warn_user
 
 WHERE = "equilibrium"
-# Tolerance of the unbalance over the load. Larger: fewer iterations, less accurate positions.
-TOLERANCE = 1e-9
 # Number of positions after which a search begins no further start; force on a pad, over the load, above which the pad
 # counts as carrying.
 MOST_PLACES, CARRIES = 400, 0.01
-# Relative round-off of the films' forces; also the displacement of a pad's edge, over the clearance, that ends the
-# search for its tilt.
-ROUNDING = 1e-11
 # Positions between the tilts at which an edge touches (0 and 1), at which the moment is evaluated first. More: a
 # balance is missed less often, slower.
 PLACES = (0.98, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.02)
@@ -92,7 +88,7 @@ def _between(pad: Pad, journal: np.ndarray, shift: float, ends: tuple[float, flo
     """
     (lower, upper), sense = ends, math.copysign(1.0, pad.speed)
     tilt = 0.5 * (lower + upper)
-    finest = ROUNDING * pad.model.bearing.radial_clearance / pad.arm
+    finest = SETTLED * pad.model.bearing.radial_clearance / pad.arm
     for _ in range(ROUNDS):
         here = pad.at(journal, shift, tilt)
         rises = here is not None and sense * here.forces[2] > 0.0
@@ -136,9 +132,9 @@ class Balanced(NamedTuple):
         """Sizes of the forces on the journal (n,), N."""
         return np.array([np.hypot(*here.forces[:2]) for here in self.loads])
 
-    def is_balanced(self, size: float, tolerance: float = TOLERANCE) -> bool:
-        """Return whether the unbalance is below a share of a force, N, plus the round-off of the pads' forces."""
-        return self.left <= tolerance * size + ROUNDING * float(self.carried.sum())
+    def is_balanced(self, size: float, tolerance: float = ROUNDING) -> bool:
+        """Return whether the unbalance is below a share of a force, N, plus the tolerance of the pads' forces."""
+        return self.left <= tolerance * size + SETTLED * float(self.carried.sum())
 
     def falls(self) -> np.ndarray | None:
         """Direction in which the films push the journal away after a small slow displacement; None without one."""
@@ -239,7 +235,7 @@ class PadSearch:
         """Reduce the unbalance by damped steps until the load is carried or no step makes progress."""
         first = 10.0 * self.size / self.bearing.radial_clearance
         resistance, longest, idle = 0.0, 0.5 * self.bearing.machined_clearance, 0
-        while not here.is_balanced(self.size, 1e-2 * TOLERANCE) and idle < PATIENCE:
+        while not here.is_balanced(self.size, SETTLED) and idle < PATIENCE:
             rows = np.vstack((here.slope, resistance * np.eye(here.unknowns.size)))
             step, *_ = np.linalg.lstsq(rows, np.append(here.unbalance, np.zeros_like(here.unbalance)), rcond=None)
             step *= min(1.0, longest / max(float(np.abs(step).max()), 1e-300))

@@ -29,7 +29,8 @@ import numpy as np
 from exudyn_ehd.film.loads import refined_peak
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
-from exudyn_ehd.joint.balance.newton import HALVINGS, LOAD_TOLERANCE, ROUNDS
+from exudyn_ehd.joint.balance.newton import LOAD_TOLERANCE, ROUNDS
+from exudyn_ehd.joint.bore.equilibrium import HALVINGS
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_number
 
