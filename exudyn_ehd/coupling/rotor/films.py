@@ -31,7 +31,6 @@ from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.dynamic_stiffness import (
     LOADS,
     PLACES,
-    SIGNS,
     FilmMemory,
     require_derivatives,
     response_of,
@@ -144,7 +143,7 @@ class RotorFilm:
         if response is None:
             return None
         own, by_wrench = free[self.places], self._wrench_map()
-        return FilmMemory(response, slow, own.T @ (by_wrench[:, LOADS] * SIGNS), self.by_place[:PLACES] @ own)
+        return FilmMemory(response, slow, own.T @ by_wrench @ LOADS.T, self.by_place[:PLACES] @ own)
 
     def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Generalized forces (n,) of a wrench (6,) and of films on end faces, and their derivatives (n, n) to x and u.
@@ -175,7 +174,7 @@ class RotorFilm:
         # N/m, of the size of the stiffness of a heavily loaded film
         stiffness = 10.0 * self.bearing.reference_force(self.motion[8]) / self.bearing.radial_clearance
         tangent = np.zeros((6, 10))
-        tangent[LOADS, range(4)] = -stiffness * SIGNS * [1.0, 1.0, *[self.bearing.length**2 / 12.0] * 2]
+        tangent[:, :4] = -stiffness * LOADS.T * [1.0, 1.0, *[self.bearing.length**2 / 12.0] * 2]
         away = np.concatenate((self.motion[:2] - middle, self.motion[2:]))
         return wrench + tangent @ away, tangent
 

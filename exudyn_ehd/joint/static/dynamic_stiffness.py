@@ -44,9 +44,9 @@ from exudyn_ehd.joint.tangent.bore import Balances, dense, load_columns
 from exudyn_ehd.joint.tangent.wrench import balance_gradients, true_fills, wrench_rows
 from exudyn_ehd.status import FilmError
 
-# Range of whirl ratios in which a threshold is searched, and number of samples in it; for journal bearings the whirl
-# ratio is near one half. More samples: fewer missed thresholds, slower.
-SLOWEST, FASTEST, STEPS = 0.05, 2.0, 24
+# Smallest whirl ratio at which a threshold is searched, and number of samples from it to the largest one of `SAMPLES`;
+# for journal bearings the whirl ratio is near one half. More samples: fewer missed thresholds, slower.
+SLOWEST, STEPS = 0.05, 24
 # Whirl ratios at which the response of a bore with many coordinates is computed, to reduce them to the space of these
 # responses; also frequencies over the rates at which the pressures of supply areas settle. Fewer: larger error. Error
 # of the critical mass of soft bushes 2e-9, of Z from 0 to 4 times the spin 5e-7.
@@ -55,9 +55,9 @@ SAMPLES = (0.0, 0.2, 0.5, 1.0, 2.0)
 # for `FilmResponse.linear` are computed. Error of Z: 1e-9 for motions of up to 15 oscillations per turn, and for
 # motions that decay far faster.
 RAYS = np.outer((0.1, 0.4, 1.0, 2.5, 6.0, 15.0, 60.0, 300.0), np.exp(1j * np.radians((0.0, 25.0, 50.0)))).ravel()
-# Number of the coordinates x, y, bx, by of a journal; rows and signs of the wrench's components that do work on them:
-# F_x, F_y, M_y, -M_x.
-PLACES, LOADS, SIGNS = 4, [0, 1, 4, 3], np.array([1.0, 1.0, 1.0, -1.0])
+# Map (4, 6) from a wrench to the loads that do work on a journal's coordinates x, y, bx, by: F_x, F_y, M_y, -M_x.
+LOADS = np.eye(6)[[0, 1, 4, 3]] * [[1.0], [1.0], [1.0], [-1.0]]
+PLACES = len(LOADS)
 
 # Round-off: of the k in `whirl_threshold`, over the largest stiffness; of a direction in a space of responses.
 ROUNDING = 1e-12
@@ -68,7 +68,7 @@ def slow_motions(tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     ``tangent`` (6, 10) is that of the wrench to the motion.
     """
-    rows = -SIGNS[:, None] * tangent[LOADS]
+    rows = -LOADS @ tangent
     return rows[:, :PLACES], rows[:, PLACES : 2 * PLACES]
 
 
@@ -109,7 +109,7 @@ class FilmResponse:
         if self.remembers:
             self._take(film, bore)
         k = len(self.stiffness)
-        rows = -np.append(SIGNS, np.ones(k))[:, None] * T[[*LOADS, *range(6, 6 + k)]]
+        rows = -np.vstack((LOADS @ T[:6], T[6:]))
         pose, rate = self._gradients(0.0)
         # stiffness and damping of slow motions without the part by the film's unknowns
         self.rest = (
@@ -126,7 +126,7 @@ class FilmResponse:
         s, w = film.solver, film.solver.work
         order, number = w.order[: w.count].copy(), np.full(w.order.size, -1)
         number[order] = np.arange(order.size)
-        rows = -SIGNS[:, None] * wrench_rows(film)[LOADS] / film.scales.force
+        rows = -LOADS @ wrench_rows(film) / film.scales.force
         stored = np.zeros(film.grid.shape)
         self.matrix = s.matrix()
         if s.closure.conserves_mass:
@@ -152,8 +152,8 @@ class FilmResponse:
             by_fill = contents.columns(film.grid.gap_shapes, w.count + areas) * scale
         # at the rupture line of a mass-conserving film the content depends on position and velocity, so that its rate
         # enters the balances
-        self.by_pose, self.by_rate = by_motion[:PLACES].copy(), by_motion[PLACES : 2 * PLACES]
-        self.by_content, self.by_sway = by_fill[:PLACES], by_fill[PLACES : 2 * PLACES]
+        # derivatives of the balances to places and to rates, and of the contents to places and to rates
+        self.by = np.stack([part[at : at + PLACES] for part in (by_motion, by_fill) for at in (0, PLACES)])
         if bore is not None:
             self._add_bore(film, bore, contents)
 
@@ -162,26 +162,24 @@ class FilmResponse:
 
         Neither the tangent nor the rupture line contains them.
         """
-        s, w, by_gap = film.solver, film.solver.work, self.by_rate
+        s, w, by_gap = film.solver, film.solver.work, self.by[1]
         if (line := s.line_gradients()) is not None:
             self.fastest = self.speed * float(np.abs(RAYS).max())
             scale = -film.scales.force * film.parts.motion_scale[PLACES : 2 * PLACES, None]
             by_gap = by_gap - line.columns(film.grid.gap_shapes, s.unknowns)[PLACES : 2 * PLACES] * scale
         follows = np.append(liner.gap_slopes.D_r.reshape(-1)[w.order[: w.count]], np.zeros(s.unknowns - w.count))
-        self.by_rate = self.by_rate + by_gap * follows
+        self.by[1] += by_gap * follows
 
     def _add_bore(self, film: SolvedFilm, bore: Bore, contents: Gradients | None) -> None:
         """Add the loads on the bore to those on the journal, and its coordinates to the motion."""
         balances, force = Balances(film), film.scales.force
         self.rows = np.concatenate((self.rows, dense(-load_columns(film, bore)) / force), axis=1)
-        place, rate = (-force * balances.times(bore.shapes, *ends).T for ends in ((1.0, 0.0), (0.0, 1.0)))
-        sway = content = np.zeros_like(rate)
+        own, ends = np.zeros((4, bore.size, balances.count)), ((1.0, 0.0), (0.0, 1.0))
+        own[:2] = [-force * balances.times(bore.shapes, *factors).T for factors in ends]
         if contents is not None:
             at, by = (film.grid.shape, balances.count), -force / balances.clearance
-            parts = (contents.matrix(*at, *factors) for factors in ((by, 0.0), (0.0, by)))
-            content, sway = (dense(part @ bore.shapes).T for part in parts)
-        self.by_pose, self.by_rate = np.concatenate((self.by_pose, place)), np.concatenate((self.by_rate, rate))
-        self.by_content, self.by_sway = np.concatenate((self.by_content, content)), np.concatenate((self.by_sway, sway))
+            own[2:] = [by * dense(contents.matrix(*at, *factors) @ bore.shapes).T for factors in ends]
+        self.by = np.concatenate((self.by, own), axis=1)
 
     def linear(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """K, C and M (p, p) of ``K z + C z_t + M z_tt = load`` for z = (journal's motions, q, reduced film unknowns).
@@ -197,14 +195,14 @@ class FilmResponse:
             factor = splu(csc_matrix(self.matrix + 1j * nu * self.store), permc_spec="NATURAL")
             Z = self._whole(nu)
             motions, loads = (np.vstack((np.eye(PLACES), self._followed(way))) for way in (Z, Z.T))
-            by_motion = self.by_pose + 1j * nu * (self.by_content + self.by_rate) - nu**2 * self.by_sway
+            by_motion = self.by[0] + 1j * nu * (self.by[1] + self.by[2]) - nu**2 * self.by[3]
             found += [factor.solve(by_motion.T @ motions), factor.solve(self.rows @ loads, trans="T")]
         V = _real_space(found)
         none, film = np.zeros((len(K), V.shape[1])), np.zeros((V.shape[1], V.shape[1]))
         return (
-            np.block([[K, -self.rows.real.T @ V], [V.T @ self.by_pose.T, V.T @ (self.matrix @ V)]]),
-            np.block([[C, none], [V.T @ (self.by_content + self.by_rate).T, V.T @ (self.store @ V)]]),
-            np.block([[np.zeros_like(K), none], [V.T @ self.by_sway.T, film]]),
+            np.block([[K, -self.rows.real.T @ V], [V.T @ self.by[0].T, V.T @ (self.matrix @ V)]]),
+            np.block([[C, none], [V.T @ (self.by[1] + self.by[2]).T, V.T @ (self.store @ V)]]),
+            np.block([[np.zeros_like(K), none], [V.T @ self.by[3].T, film]]),
         )
 
     def _frequencies(self, shares: Sequence[complex]) -> np.ndarray:
@@ -237,8 +235,8 @@ class FilmResponse:
         # the unknowns are numbered for a narrow band
         factor = splu(csc_matrix(self.matrix + 1j * frequency * self.store), permc_spec="NATURAL")
         lam = factor.solve(self.rows, trans="T")
-        pose, rate = self.by_pose + 1j * frequency * self.by_content, self.by_rate + 1j * frequency * self.by_sway
-        return (pose @ lam).T, (rate @ lam).T
+        pose, rate = (self.by[:2] + 1j * frequency * self.by[2:]) @ lam
+        return pose.T, rate.T
 
     def _followed(self, Z: np.ndarray) -> np.ndarray:
         """Amplitudes q (k, 4) by unit motions of the journal."""
@@ -246,12 +244,11 @@ class FilmResponse:
 
     def _reduce(self, found: list[np.ndarray]) -> None:
         """Reduce q to the space of its responses ``found`` at some frequencies."""
-        columns = [part for q in found for part in (q.real, q.imag)]
-        V = block_diag(np.eye(PLACES), np.linalg.qr(np.concatenate(columns, axis=1))[0])
-        self.rows, self.by_pose, self.by_rate = self.rows @ V, V.T @ self.by_pose, V.T @ self.by_rate
-        self.by_content, self.by_sway = V.T @ self.by_content, V.T @ self.by_sway
+        space = _real_space(found)
+        V = block_diag(np.eye(PLACES), space)
+        self.rows, self.by = self.rows @ V, V.T @ self.by
         self.rest = V.T @ self.rest[0] @ V, V.T @ self.rest[1] @ V
-        self.stiffness = V[PLACES:, PLACES:].T @ self.stiffness @ V[PLACES:, PLACES:]
+        self.stiffness = space.T @ self.stiffness @ space
 
 
 def _real_space(found: list[np.ndarray]) -> np.ndarray:
@@ -375,10 +372,10 @@ def threshold(
         found = np.linalg.eigvals(stiffness(frequency)[:2, :2])
         return found[np.argsort(found.imag)]
 
-    nu = omega * np.geomspace(SLOWEST, FASTEST, STEPS)
+    nu = omega * np.geomspace(SLOWEST, SAMPLES[-1], STEPS)
     if rates.size:
         low, high = min(nu[0], rates.min() * SLOWEST**2), max(nu[-1], min(rates.max() / SLOWEST**2, fastest))
-        nu = np.geomspace(low, high, math.ceil(STEPS * math.log(high / low) / math.log(FASTEST / SLOWEST)))
+        nu = np.geomspace(low, high, math.ceil(STEPS * math.log(high / low) / math.log(SAMPLES[-1] / SLOWEST)))
     imag, found = np.array([values(frequency).imag for frequency in nu]), []
     for k, q in np.argwhere(np.diff(np.sign(imag), axis=0)):
         frequency = scipy.optimize.brentq(lambda nu, q=q: values(nu)[q].imag, nu[k], nu[k + 1], rtol=1e-9)

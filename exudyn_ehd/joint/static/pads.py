@@ -43,7 +43,7 @@ from exudyn_ehd.joint.model.build import compile_kernels
 from exudyn_ehd.joint.model.effects import collect_effects
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
-from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, PLACES, SIGNS, FilmMemory, response_of
+from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, PLACES, FilmMemory, response_of
 from exudyn_ehd.status import (
     NOT_NEGATIVE,
     POSITIVE,
@@ -375,7 +375,7 @@ class Pad:
         if response is None:
             return None
         to_forces, by_place = self._maps(own.tilt, own.motion)
-        return FilmMemory(response, slow, to_forces[:, LOADS] * SIGNS, by_place[:PLACES])
+        return FilmMemory(response, slow, to_forces @ LOADS.T, by_place[:PLACES])
 
 
 def open_tilts(pad: Pad, journal: np.ndarray, shift: float) -> tuple[float, float, float] | None:

@@ -7,7 +7,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, SIGNS, response_of
+from exudyn_ehd.joint.static.dynamic_stiffness import LOADS, response_of
 from tests.sampling import but_slow, sample
 
 R, L, C, SPEED, VISCOSITY = 0.025, 0.025, 25e-6, 300.0, 0.02
@@ -207,17 +207,14 @@ def test_slow_and_fast_limits_of_tilts(tilt):
     sizes = np.outer([1.0, 1.0, L, L], [1.0, 1.0, L, L])
     (stiffness, _), response = response_of(model.evaluate(motion))
     scale = np.abs(stiffness / sizes).max() * sizes
-    sudden = -SIGNS[:, None] * model.evaluate(motion, model.evaluate(motion).history()).tangent()[LOADS]
+    sudden = -LOADS @ model.evaluate(motion, model.evaluate(motion).history()).tangent()
     assert np.all(np.abs(response.at(0.0) - stiffness) < 1e-10 * scale)
     slow, fast = 1e-4 * SPEED, 1e7 * SPEED
     model.evaluate(motion)
     assert np.abs((response.at(fast).imag / fast - sudden[:, 4:8]) / sizes).max() < 1e-4 * np.abs(sudden[:2, 4:6]).max()
     for k in range(4):
         forces = [
-            (
-                SIGNS
-                * model.evaluate(motion + sign * np.eye(10)[k] * (1e-5 * C if k < 2 else 1e-5 * C / L)).wrench[LOADS]
-            )
+            LOADS @ model.evaluate(motion + sign * np.eye(10)[k] * (1e-5 * C if k < 2 else 1e-5 * C / L)).wrench
             for sign in (1.0, -1.0)
         ]
         slope = (forces[1] - forces[0]) / (2e-5 * C if k < 2 else 2e-5 * C / L)
