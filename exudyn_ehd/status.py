@@ -461,9 +461,9 @@ def require_vector(where: str, value: Sequence[float] | np.ndarray, size: int, u
     return vector
 
 
-def require_size(where: str, value: float | np.ndarray, unit: str, *, smallest: float, largest: float) -> None:
+def require_size(where: str, value: float | np.ndarray, unit: str, largest: float) -> None:
     """Raise `InputError` if a size is neither 0 nor within limits beyond which numbers overflow or vanish."""
-    size = float(np.max(np.abs(value)))
+    size, smallest = float(np.max(np.abs(value))), 1e-30
     if size != 0.0 and not smallest <= size <= largest:
         raise InputError(
             f"{where} must be 0 or between {smallest:g} and {largest:g} {unit} in size, got {value!r}; check its unit."

@@ -21,8 +21,6 @@ from exudyn_ehd.film.solvers.newton import solve_rupturing
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.joint.solved_film import FilmParts, History, JournalMotion, Loads, Scales, SolvedFilm
 
-_NO_CONTACT = np.zeros(6)
-
 
 def has_plain_edges(bearing: JournalBearing) -> bool:
     """Return whether the ends are open, and no pressure acts on the cross sections at which films of arcs end."""
@@ -105,7 +103,7 @@ def solve_plain(
         None if parts.contacts is None else parts.contacts.press(s.H, smallest),
         None,
         OilFields(y.pressure),
-        Loads(out[:6], _NO_CONTACT, out[6:10], couette, s_theta),
+        Loads(out[:6], np.zeros(6), out[6:10], couette, s_theta),
         parts.bearing.radial_clearance * smallest,
         None,
         parts.evaluations,

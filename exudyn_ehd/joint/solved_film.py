@@ -33,13 +33,14 @@ from exudyn_ehd.film.solvers.liner import LinerFilm
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.supply.cuts import RecessShear, SupplyMap
 from exudyn_ehd.film.surfaces.contact import Contact, slip
+from exudyn_ehd.status import ROUNDING
 
 # Entries of the motion of two rigid surfaces; the coordinates and rates of a flexible bore follow them.
 MOTION_SIZE = 10
-# Eccentricities over the clearance. CENTRE: up to it a journal counts as central; it is larger than the round-off of a
-# position of 1 m in a clearance of 1 um. BESIDE: eccentricity of the films slightly off the centre that replace it;
-# relative error of their K and C.
-CENTRE, BESIDE = 1e-9, 1e-6
+# Eccentricity over the clearance of the films slightly off the centre that replace a central one; relative error of
+# their K and C. A journal counts as central up to an eccentricity ratio of `ROUNDING`, which is larger than the
+# round-off of a position of 1 m in a clearance of 1 um.
+BESIDE = 1e-6
 # Largest difference between K or C in one direction and their mean over directions, over the mean, up to which the mean
 # counts as stiffness and damping at the centre; on n columns at least 2 / n. Larger: bearings that are not the same in
 # all directions pass. Measured: bearings that are the same in all directions at most 0.12 on 17 columns, 0.057 on 31,
@@ -360,9 +361,9 @@ class SolvedFilm(NamedTuple):
     @property
     def is_central(self) -> bool:
         """Return whether the journal is at the exact centre of a film that may rupture, with no pressure anywhere."""
-        w, cavity, source = self.journal, self.scales.cavity, CENTRE * abs(self.journal.omega)
+        w, cavity, source = self.journal, self.scales.cavity, ROUNDING * abs(self.journal.omega)
         # most films return here
-        if abs(w.pose[0]) > CENTRE or np.abs(w.pose).max() > CENTRE or np.abs(w.rate).max() > source:
+        if abs(w.pose[0]) > ROUNDING or np.abs(w.pose).max() > ROUNDING or np.abs(w.rate).max() > source:
             return False
         if not self.solver.ruptures or isinstance(self.parts.bearing.inlet, MaximumGap) or self.grid.edges.size:
             return False

@@ -26,8 +26,8 @@ from exudyn_ehd.film.cavitation.closures import place_line
 from exudyn_ehd.film.heat.options import known_supply
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
 from exudyn_ehd.joint.heat.temperature import OilTemperature, viscosity_ratio
-from exudyn_ehd.joint.solved_film import BESIDE, CENTRE, LARGEST_SPREAD, MOTION_SIZE, FacesHeat, History, SolvedFilm
-from exudyn_ehd.status import FilmError, Status
+from exudyn_ehd.joint.solved_film import BESIDE, LARGEST_SPREAD, MOTION_SIZE, FacesHeat, History, SolvedFilm
+from exudyn_ehd.status import ROUNDING, FilmError, Status
 
 PLACE = MOTION_SIZE
 """Index of the axial position in the motion, the last one."""
@@ -224,8 +224,8 @@ def seen_by_faces(film: SolvedFilm | None, heat: OilTemperature | None) -> Histo
 
 def is_at_rest(face: FaceFilm) -> bool:
     """Return whether a film that may rupture has no pressure, between parallel surfaces that are at rest."""
-    source = CENTRE * abs(float(face.motion[6]))
-    if np.abs(face.pose[1:]).max() > CENTRE or np.abs(face.rate).max() > source:
+    source = ROUNDING * abs(float(face.motion[6]))
+    if np.abs(face.pose[1:]).max() > ROUNDING or np.abs(face.rate).max() > source:
         return False
     cavity = float(face.known[2])
     return math.isfinite(cavity) and bool(np.abs(face.solver.pressure - cavity).max() <= source + 1e-12 * abs(cavity))

@@ -44,9 +44,6 @@ from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drops, to_ends
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_count, require_number, require_type, require_vector
 
-# Symmetric matrix of second moments: index of each entry in the list xx, yy, zz, xy, xz, yz.
-COMPONENTS = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
-
 
 @dataclass(frozen=True, eq=False)
 class SpherePatch:
@@ -63,8 +60,8 @@ class SpherePatch:
     area : (n, m) array
     vector : (3, n, m) array
         Integral of the normal over each control volume.
-    tensor : (6, n, m) array
-        Integrals of the products of its components, in the order of `COMPONENTS`.
+    tensor : (3, 3, n, m) array
+        Integrals of the products of two of its components.
     """
 
     grid: FilmGrid
@@ -111,7 +108,8 @@ def sphere_patch(radius: float, angles: tuple[float, float], n_phi: int, n_chi: 
     around = _around(phi, step)
     across = np.diff(_across(faces), axis=1)
     vector = np.stack([np.outer(around[a], across[b]) for a, b in ((1, 1), (2, 1), (0, 2))])
-    tensor = np.stack([np.outer(around[a], across[b]) for a, b in ((3, 3), (4, 3), (0, 4), (5, 3), (1, 5), (2, 5))])
+    pairs = (((3, 3), (5, 3), (1, 5)), ((5, 3), (4, 3), (2, 5)), ((1, 5), (2, 5), (0, 4)))
+    tensor = np.array([[np.outer(around[a], across[b]) for a, b in row] for row in pairs])
     normals, links = _directions(phi, chi), _directions(grid.x_face, chi)
     return SpherePatch(grid, chi, faces, normals, links, np.outer(around[0], across[0]), vector, tensor)
 
@@ -239,13 +237,13 @@ def skew(v: np.ndarray) -> np.ndarray:
 
 
 def drag_of_moments(R: float) -> np.ndarray:
-    """Return the map from moments over H (10,) to the shear (36, 10) per speed: [[K, -R a x], [R a x, R^2 K]]."""
+    """Return the map from moments over H (13,) to the shear (36, 13) per speed: [[K, -R a x], [R a x, R^2 K]]."""
 
     def drag(moments: np.ndarray) -> np.ndarray:
-        K, turn = moments[0] * np.eye(3) - moments[4:][COMPONENTS], R * skew(moments[1:4])
+        K, turn = moments[0] * np.eye(3) - moments[4:].reshape(3, 3), R * skew(moments[1:4])
         return np.block([[K, -turn], [turn, R**2 * K]])
 
-    return np.stack([drag(moments) for moments in np.eye(10)], axis=-1).reshape(36, 10)
+    return np.stack([drag(moments) for moments in np.eye(13)], axis=-1).reshape(36, 13)
 
 
 # Least width of a patch, and least colatitude of its open end from either pole, rad.

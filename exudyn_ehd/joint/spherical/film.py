@@ -55,6 +55,7 @@ from exudyn_ehd.film.heat.energy import film_flows, film_heat
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.film.reynolds.links import on_links
+from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.surfaces.contact import WallContact
@@ -69,10 +70,6 @@ SIZE = SPIN.stop
 `exudyn_ehd.joint.time_step` expects four places and four rates."""
 # Matrices that select the place (3,), and velocity and angular velocity (6,), of a motion.
 PLACES, SPEEDS = np.eye(SIZE)[PLACE], np.eye(SIZE)[np.r_[VELOCITY, SPIN]]
-
-
-# Scaled pressure and its derivative to the solver's unknown, viscosity ratio and its derivative.
-OilState = tuple[np.ndarray, np.ndarray | float, np.ndarray | float, np.ndarray | float]
 
 
 class BallFilm(NamedTuple):
@@ -90,7 +87,7 @@ class BallFilm(NamedTuple):
     drag : (6, 6) array
         Force and torque of the Couette shear per velocity and angular velocity.
     stored_power : W, stored by the wall
-    pressure_q, ratio, ratio_q : (n m,) arrays or floats
+    pressure_q, ratio, ratio_q : (n, m) arrays
         Derivative of the pressure to the solver's unknown; viscosity over that at ambient pressure, and its derivative.
     motion : (11,) array
     temperature : K, None for an isothermal film
@@ -108,9 +105,9 @@ class BallFilm(NamedTuple):
     contact: np.ndarray
     drag: np.ndarray
     stored_power: float
-    pressure_q: np.ndarray | float
-    ratio: np.ndarray | float
-    ratio_q: np.ndarray | float
+    pressure_q: np.ndarray
+    ratio: np.ndarray
+    ratio_q: np.ndarray
     motion: np.ndarray
     temperature: float | None
     history: History
@@ -153,7 +150,7 @@ class SphericalFilm:
             self._cavity = float(self.law.transform(np.array(self._cavity)))
         # over control volumes: normals, and storage of a velocity (m/s) per area of the grid
         self._vector = p.vector.reshape(3, -1)
-        self._moments = np.concatenate([p.area[None], p.vector, p.tensor]).reshape(10, -1)
+        self._moments = np.vstack([part.reshape(-1, p.area.size) for part in (p.area, p.vector, p.tensor)])
         self._storage = -(p.vector / (c * p.grid.area)).reshape(3, -1)
         self._gap_slope, self._link_slope = (-n.reshape(3, -1) / c for n in (p.normals, p.link_normals))
         self._of_moments = -drag_of_moments(R)
@@ -208,8 +205,8 @@ class SphericalFilm:
         status, _ = s.advance(*speeds, self._cavity / self.pressure_scale, past.void, past.outflow, step)
         if status is not Status.CONVERGED or not np.isfinite(s.pressure.sum()):
             return (Status.NOT_CONVERGED if status is Status.CONVERGED else status), None
-        oil = self._oil()
-        if oil is None:
+        oil = s.oil_fields(self.law, None)
+        if oil is None or oil.beyond:
             return Status.NO_PRESSURE, None
         return status, self._loads(motion, oil, (temperature, past, step))
 
@@ -239,22 +236,14 @@ class SphericalFilm:
         s = self.solver
         return shear_share(s.system, s.work.active, s.closure).ravel()
 
-    def _oil(self) -> OilState | None:
-        """Pressure and viscosity of the solution; None if it lies beyond the end of the pressure law."""
-        oil = self.solver.oil_fields(self.law, None)
-        if oil is None or oil.beyond:
-            return None
-        given = (oil.P_q, 1.0), (oil.ratio, 1.0), (oil.ratio_q, 0.0)
-        pressure_q, ratio, ratio_q = (usual if field is None else field.ravel() for field, usual in given)
-        return oil.P, pressure_q, ratio, ratio_q
-
-    def _loads(self, motion: np.ndarray, oil: OilState, state: tuple[float | None, History, float]) -> BallFilm:
+    def _loads(self, motion: np.ndarray, oil: OilFields, state: tuple[float | None, History, float]) -> BallFilm:
         s, R2, velocity, cross = self.solver, self.bearing.ball_radius**2, motion[VELOCITY], skew(motion[PLACE])
-        P, pressure_q, ratio, ratio_q = oil
+        P, given = oil.P, ((oil.P_q, s.ones), (oil.ratio, s.ones), (oil.ratio_q, s.nothing))
+        pressure_q, ratio, ratio_q = (usual if field is None else field for field, usual in given)
         normal = self._vector @ P.ravel()
         pulled = normal if not self._limits else self._vector @ (P * self._closed.slope).ravel()
         contact = -R2 * (self._vector @ self._wall.ravel())
-        drag = (self._drag @ (self._moments @ (self._share() * ratio / s.H.ravel()))).reshape(6, 6)
+        drag = (self._drag @ (self._moments @ (self._share() * (ratio / s.H).ravel()))).reshape(6, 6)
         loads = drag @ np.concatenate([velocity, motion[SPIN]])
         force = loads[:3] - self.force_scale * normal + contact
         torque = loads[3:] + 0.5 * self.force_scale * cross @ pulled

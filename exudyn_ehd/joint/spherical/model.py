@@ -16,11 +16,11 @@ from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.reynolds.links import on_links
 from exudyn_ehd.film.solvers.film import shear_by_unknown
 from exudyn_ehd.joint.balance.limits import WAY_OUT, require_oil_bears
-from exudyn_ehd.joint.solved_film import BESIDE, CENTRE, History, SolvedFilm
+from exudyn_ehd.joint.solved_film import BESIDE, History, SolvedFilm
 from exudyn_ehd.joint.spherical.bearing import SphereFlow, skew
 from exudyn_ehd.joint.spherical.film import PLACE, PLACES, SIZE, SPEEDS, SPIN, VELOCITY, BallFilm, SphericalFilm
 from exudyn_ehd.joint.thrust import quotients
-from exudyn_ehd.status import SMALL, FilmError, Status
+from exudyn_ehd.status import ROUNDING, SMALL, FilmError, Status
 
 
 @dataclass(eq=False)
@@ -140,7 +140,7 @@ class SphericalModel(SphericalFilm):
 
     def is_at_rest(self, motion: np.ndarray) -> bool:
         """Return whether a film at this motion has no source, and would rupture under any small source."""
-        source = CENTRE * self.bearing.radial_clearance * float(np.linalg.norm(motion[SPIN]))
+        source = ROUNDING * self.bearing.radial_clearance * float(np.linalg.norm(motion[SPIN]))
         entrained = motion[VELOCITY] + 0.5 * skew(motion[PLACE]) @ motion[SPIN]
         return self._cavity == 0.0 and float(np.linalg.norm(entrained)) <= source
 
@@ -172,8 +172,8 @@ class SphericalModel(SphericalFilm):
         n, P, share = len(rows), film.pressure / self.pressure_scale, self._share()
         rows = rows * w.active.ravel()
         if follows := self.law is not None or self.remembers_mass:
-            sheared = np.tensordot(self._drag.reshape(6, 6, 10), speeds, (1, 0)) @ self._moments
-            rows = np.concatenate([rows * film.pressure_q, self._shear_rows(sheared, film, share)])
+            sheared = np.tensordot(self._drag.reshape(6, 6, -1), speeds, (1, 0)) @ self._moments
+            rows = np.concatenate([rows * film.pressure_q.ravel(), self._shear_rows(sheared, film, share)])
         at, k = w.order[: w.count], len(rows)
         lam, y = np.ascontiguousarray(rows[:, at]), s.system
         if y.continued is not None:
@@ -189,7 +189,7 @@ class SphericalModel(SphericalFilm):
         if self.flow is not None:
             pressed += self._by_flow(self.flow, lam)
         pulled = pressed[n - 3 : n] + (P * f.bend).ravel() * self._vector @ self._gap_slope.T @ PLACES
-        thinner = -share * film.ratio * f.slope.ravel() / s.H.ravel() ** 2
+        thinner = -share * (film.ratio * f.slope / s.H**2).ravel()
         drag = self._drag @ (self._moments @ (thinner * self._gap_slope).T)
         out = film.drag @ SPEEDS + np.tensordot(drag.reshape(6, 6, 3), speeds, (1, 0)) @ PLACES
         if follows:
@@ -204,10 +204,9 @@ class SphericalModel(SphericalFilm):
         """Weights (k, n m) of the unknowns in sums of viscosity ratio / H with the weights ``sheared``."""
         s, active = self.solver, self.solver.work.active
         if not self.remembers_mass:
-            return np.asarray(sheared * (film.ratio_q * share / s.H.ravel()) * active.ravel())
+            return np.asarray(sheared * (share * (film.ratio_q / s.H * active).ravel()))
         y, fixed, out = s.system, self.grid.fixed, np.empty((len(sheared), *s.H.shape))
-        ratio, ratio_q = ((x * s.ones.ravel()).reshape(s.H.shape) for x in (film.ratio, film.ratio_q))
-        oil = s.H, ratio, ratio_q, s.fill, s.nothing, active | fixed, fixed, s.pressure, y.cavity_pressure
+        oil = s.H, film.ratio, film.ratio_q, s.fill, s.nothing, active | fixed, fixed, s.pressure, y.cavity_pressure
         for weights, row in zip(sheared.reshape(out.shape), out, strict=True):
             shear_by_unknown(weights, *oil, row)
         return out.reshape(len(out), -1)

@@ -39,7 +39,7 @@ from exudyn_ehd.joint.static.dynamic_stiffness import (
 from exudyn_ehd.joint.static.pad_equilibrium import TiltingPadResult, pad_equilibrium
 from exudyn_ehd.joint.static.pads import TiltingPads
 from exudyn_ehd.joint.static.steady import (
-    SPEEDS,
+    LARGEST_SPEED,
     SteadyResult,
     model_at,
     require_faces,
@@ -64,7 +64,6 @@ SURE = 0.05
 ON_GRID, CLIPPED, IN_CELLS = 0.013, 0.016, 0.0013
 # Relative error of the critical mass on 96 columns without cancellation, rupture line inside the cells.
 LEFT_IN_CELLS = 0.007
-LOADS = {"smallest": 1e-30, "largest": 1e15}
 # Force that replaces a load of 0 in the relative residual: share of L D mu omega / psi^2, plus share of L D times the
 # supply pressure of restrictors. Smaller: a more accurate position. Round-off limits this at 1e-16 of the first force,
 # the balances of restrictors at 1e-13 of the second one.
@@ -306,7 +305,7 @@ def equilibrium(
     omega = require_number("equilibrium: speed", speed, "rad/s")
     if omega * bearing.journal_radius == 0.0:
         raise InputError("equilibrium: speed must not be zero: without it the film carries no load at any position.")
-    require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
+    require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", LARGEST_SPEED)
     if isinstance(bearing, TiltingThrustPads):
         from exudyn_ehd.joint.static.thrust_pads import equilibrium_of_pads
 
@@ -318,7 +317,7 @@ def equilibrium(
     if size == 0.0:
         size = _no_load(bearing.pad(0) if isinstance(bearing, TiltingPads) else bearing, omega)
     else:
-        require_size("equilibrium: load", size, "N", **LOADS)
+        require_size("equilibrium: load", size, "N", 1e15)
     if isinstance(bearing, TiltingPads):
         return pad_equilibrium(bearing, omega, force, size, not np.any(b) and place == 0.0 and axial_load is None)
     line, kind = isinstance(bearing.inlet, MaximumGap), LoadSearch

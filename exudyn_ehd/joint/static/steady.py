@@ -152,9 +152,9 @@ def result_of(found: ThrustEvaluation) -> ThrustResult:
     )
 
 
-# Strain of a linear bush (displacement over thickness) above which, with an error above 1 %, a warning is given.
-LARGEST_STRAIN = 0.01
-SPEEDS = {"smallest": 1e-30, "largest": 1e6}
+# Strain of a linear bush (displacement over thickness) above which, with an error above 1 %, a warning is given. Speed
+# of a surface, m/s, above which numbers may overflow.
+LARGEST_STRAIN, LARGEST_SPEED = 0.01, 1e6
 
 
 @dataclass(frozen=True, eq=False)
@@ -384,10 +384,10 @@ def steady(
     v = require_vector("steady: velocity", velocity, 2, "m/s")
     omega = require_number("steady: speed", speed, "rad/s")
     w = require_number("steady: axial_speed", axial_speed, "m/s")
-    require_size("steady: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
+    require_size("steady: speed", omega * bearing.journal_radius, "m/s at the surface", LARGEST_SPEED)
     place = require_number("steady: axial_position", axial_position, "m")
-    require_size("steady: velocity", v, "m/s", **SPEEDS)
-    require_size("steady: axial_speed", w, "m/s", **SPEEDS)
+    require_size("steady: velocity", v, "m/s", LARGEST_SPEED)
+    require_size("steady: axial_speed", w, "m/s", LARGEST_SPEED)
     require_oil(bearing, "steady", w)
     position = e * math.cos(angle), e * math.sin(angle)
     start = angle + math.pi if isinstance(bearing.inlet, MaximumGap) else 0.0

@@ -278,7 +278,7 @@ def test_work_is_heat(closure, wall, law):
         state[VELOCITY] *= 1.0 if law is None else 0.1
         found = film.evaluate(state)
         q, H, P = solver.system.linear_pressure, solver.H.copy(), found.film.pressure / film.pressure_scale
-        thick = np.reshape(found.film.ratio * np.ones(q.size), q.shape)
+        thick = found.film.ratio
         slip = state[VELOCITY][:, None, None] + R * np.cross(state[SPIN], patch.normals, axisb=0, axisc=0)
         slip -= patch.normals * (slip * patch.normals).sum(0)
         couette = float((MU * R**2 / C * (slip**2).sum(0) * patch.area * thick / H).sum())
