@@ -31,7 +31,7 @@ import numpy as np
 from numpy.linalg import norm
 
 from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, outside_table, require_oil_bears, seized
-from exudyn_ehd.joint.bore.equilibrium import HALVINGS, SETTLED
+from exudyn_ehd.joint.bore.equilibrium import HALVINGS, MOST_FILMS, SETTLED
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, seen_by_faces
@@ -45,9 +45,6 @@ LOAD_TOLERANCE = 1e-10
 ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
 # Damping factor of the temperature's steps, below which a search without progress gives up.
 WEAKEST = 0.1
-# Largest number of film solves of one search. A round takes some ten of them on a flexible bore. Larger: a hopeless
-# search takes longer.
-LARGEST_EFFORT = 6000
 # Changes of the temperature in K: the largest one in a round; the one below which Anderson's acceleration is used; the
 # one that has the same scaled size as a move by the clearance.
 LARGEST_CHANGE, ACCELERATED, TYPICAL_CHANGE = 50.0, 5.0, 30.0
@@ -220,7 +217,7 @@ class Balance:
         past: list[tuple[np.ndarray, np.ndarray]] = []
         best, smallest, idle, part, damping, highest = here, self.error(here), 0, 1.0, 1.0, 1e12 * resistance
         for _ in range(rounds):
-            spent = self.model.parts.evaluations - self.first > LARGEST_EFFORT
+            spent = self.model.parts.evaluations - self.first > MOST_FILMS
             if self.is_balanced(here, tolerance, SETTLED) or spent:
                 break
             if idle > PATIENCE:

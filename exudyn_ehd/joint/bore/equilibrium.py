@@ -38,8 +38,8 @@ HALVINGS = 12
 # Newton's method is tried; number of film solves after which it is not begun or ends. It fails at a step h of less than
 # `ROUNDING` times tau.
 SLOWEST, NEAR, LARGEST_EFFORT = 10.0, 0.02, 600
-# Largest number of film solves of a whole search.
-LARGEST_WAY = 3000
+# Largest number of film solves of a whole search. Larger: a hopeless search takes longer.
+MOST_FILMS = 6000
 
 
 class Elasticity:
@@ -151,7 +151,7 @@ def bore_equilibrium(
     newton = Newton(model, motion, film)
     found = newton.solve(start, 1.0, straight=True) if start.any() else None
     reached, part, q, rate = 0.0, 1.0, np.zeros_like(start), np.zeros_like(start)
-    while found is None and part > SMALLEST_PART and newton.trials < LARGEST_WAY:
+    while found is None and part > SMALLEST_PART and newton.trials < MOST_FILMS:
         target = min(1.0, reached + part)
         near = newton.settle(q + (target - reached) * rate, target)
         if near is None:

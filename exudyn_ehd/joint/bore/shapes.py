@@ -47,8 +47,8 @@ from exudyn_ehd.status import ROUNDING, SMALL
 
 # Number of vertices of an interpolation. Gauss points of a panel are exact for cubics times quadratic shape functions.
 STENCIL = 4
-# Fraction of an interval below which a panel is omitted; absolute value below which an entry of a matrix is round-off.
-TOUCHING, SMALLEST = 1e-3, 1e-14
+# Fraction of an interval below which a panel is omitted.
+TOUCHING = 1e-3
 # Size of the change in `_along` that does not vanish for linear pressures; that of the others is 1. Smaller: it is used
 # less.
 LINEAR = 0.03
@@ -65,14 +65,14 @@ def vertex_means(faces: Surface, grid: FilmGrid) -> csr_matrix:
     means = kron(around, csr_matrix(along), format="csr")
     torn = _near_rims(faces, grid)
     if not torn.any():
-        return _pruned(means @ _values(faces, grid, theta, z))
+        return means @ _values(faces, grid, theta, z)
     means = diags((~torn).astype(float)) @ means
     means.eliminate_zeros()
     used = np.unique(means.indices)
     places = np.flatnonzero(torn)
     own = csr_matrix((np.ones(places.size), (places, np.arange(places.size))), shape=(torn.size, places.size))
     sound = means[:, used] @ _values(faces, grid, theta, z, used)
-    return _pruned(sound + own @ _values(faces, grid, grid.x, grid.z, places))
+    return sound + own @ _values(faces, grid, grid.x, grid.z, places)
 
 
 def end_means(faces: Surface, grid: FilmGrid) -> csr_matrix:
@@ -83,7 +83,7 @@ def end_means(faces: Surface, grid: FilmGrid) -> csr_matrix:
     z, _, weight = _along(grid, faces.cuts[1] / grid.reference_length)
     theta, around = _around(grid, faces.cuts[0])
     courses = csr_matrix(_end_courses(z, weight))
-    return _pruned(kron(around, courses, format="csr") @ _values(faces, grid, theta, z))
+    return kron(around, courses, format="csr") @ _values(faces, grid, theta, z)
 
 
 def separate_means(
@@ -117,13 +117,6 @@ def _values(
     return vstack([faces.interpolation(theta[p // z.size], places[p % z.size]) for p in parts], format="csr")
 
 
-def _pruned(matrix: csr_matrix) -> csr_matrix:
-    """Return a matrix without the entries that are round-off."""
-    matrix.data[np.abs(matrix.data) < SMALLEST] = 0.0
-    matrix.eliminate_zeros()
-    return matrix
-
-
 def _near_rims(faces: Surface, grid: FilmGrid) -> np.ndarray:
     """Vertices (n m,) that share an interval of their interpolation with an edge at which faces end.
 
@@ -152,11 +145,7 @@ def _panels(start: float, width: float, cuts: np.ndarray) -> tuple[np.ndarray, n
 
 def _lagrange(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
     """Polynomials (x, nodes) that are one at a node each and zero at the others."""
-    out = np.ones((x.size, nodes.size))
-    for i, own in enumerate(nodes):
-        for other in np.delete(nodes, i):
-            out[:, i] *= (x - other) / (own - other)
-    return out
+    return np.asarray(np.vander(x, nodes.size) @ np.linalg.inv(np.vander(nodes)))
 
 
 def _around(grid: FilmGrid, cuts: np.ndarray) -> tuple[np.ndarray, csr_matrix]:
