@@ -35,6 +35,7 @@ from exudyn_ehd.joint.audit.samples import (
 )
 from exudyn_ehd.joint.audit.switches import Switch, two_dimensional
 from exudyn_ehd.joint.balance.newton import FREE_STEP, ROOM, evaluate_at
+from exudyn_ehd.joint.bore.equilibrium import SETTLING_STEPS
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
@@ -44,8 +45,6 @@ from exudyn_ehd.status import SMALL, FilmError, InputError, Status, require_type
 # Relative change above which an effect matters, and change below which an effect that is on is not needed. Smaller
 # values: more effects count as important, and fewer as needless.
 MATTERS, NOTHING = 0.03, 0.02
-# Largest number of films of a search for the same load. Smaller: more searches end without a film.
-MOST_FILMS = 60
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -273,7 +272,7 @@ class Case:
         is_soft, share = other.flexible or b.contact is not None or b.asperity is not None, math.nan
         # the first step goes from the centre to the state's position; halved steps reach a film between both
         place, step, error = np.zeros(k), motion[:k].copy(), math.inf
-        for count in range(MOST_FILMS):
+        for count in range(SETTLING_STEPS):
             motion[:k] = place + step
             try:
                 reached = steady(motion.copy())

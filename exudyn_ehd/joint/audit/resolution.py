@@ -58,9 +58,8 @@ from exudyn_ehd.status import GridWarning, RingingWarning, warn_user
 # warning. Number of rows from an end up to which the peak counts as next to that end.
 FEWEST, STEEPEST, NEAR = 3.2, 2.15, 2
 # Properties of the grid that a warning names, with an error of 2 % of the peak pressure: intervals across the peak;
-# narrowing less one; stretch of the rows; length of the end interval with this stretch, times n_z over half the length;
-# least number of rows.
-ENOUGH, GENTLE, STRETCH, END_INTERVAL, FEWEST_ROWS = 6.0, 0.4, 0.95, 0.235, 48
+# narrowing less one; stretch of the rows; least number of rows.
+ENOUGH, GENTLE, STRETCH, FEWEST_ROWS = 6.0, 0.4, 0.95, 48
 # Narrowing up to which the film counts as even along the bearing, so that its rows are kept. At a limit of 1.15 the
 # peak, which lies between two rows, would have an error of up to 4 %.
 EVEN = 1.02
@@ -129,7 +128,9 @@ def _wanted(
         return None
     rows, stretch = own.n_z, own.stretch
     if narrowing > EVEN:
-        needed = END_INTERVAL * film.parts.half_length / interval * (narrowing - 1.0) / GENTLE
+        # half the length over n_z, times this number, is the end interval with the stretch
+        last = math.pi * STRETCH / math.tan(0.5 * math.pi * STRETCH)
+        needed = last * film.parts.half_length / interval * (narrowing - 1.0) / GENTLE
         rows, stretch = max(rows, FEWEST_ROWS, 2 * math.ceil(0.5 * needed)), STRETCH
         bend = float(H[(k + 1) % n, row] - 2.0 * H[k, row] + H[k - 1, row])
         if bend > 0.0:
@@ -194,14 +195,14 @@ LOCAL_SHARE, LARGEST_SHARE, FADING = 0.1, 0.01, 0.99
 EVEN_ALTERNATION = 0.3
 # Mean pressure on the projected area, Pa, below which d is ignored as round-off next to an ideal joint.
 NEGLIGIBLE = 100.0
-# Limits of a burst: least strength over that of the five steps before; or least share of the last burst's strength
-# after this many zigzags; least number of steps between two bursts. Larger values: fewer bursts are counted.
-STRONGER, KEPT, LASTING, APART = 1.5, 0.75, 20, 5
+# Limits of a burst: least strength over that of the five steps before, in which no burst may lie; or least share of the
+# last burst's strength after this many zigzags. Larger values: fewer bursts are counted.
+STRONGER, KEPT, LASTING = 1.5, 0.75, 20
 # Number of steps in which bursts are counted together, and number of bursts in it from which on a run rings.
 WINDOW, LIMIT = 100, 4
 # Limits of a force that throws masses: least ratio to its mean, least pressure on the projected area in Pa, least share
-# of the largest force; a run that rings ends at this number of such forces within the window.
-PROPORTION, HEAVY, STRONG_SHARE, MOST_THROWS = 10.0, 1e6, 0.3, 20
+# of the largest force. A run that rings ends at `LASTING` such forces within the window.
+PROPORTION, HEAVY, STRONG_SHARE = 10.0, 1e6, 0.3
 
 
 class RingingWatch:
@@ -236,7 +237,7 @@ class RingingWatch:
         self._states: deque[tuple[float, float, float, float]] = deque(maxlen=4)
         self._bends: deque[tuple[float, float, float, float]] = deque([(0.0, 0.0, 0.0, 0.0)] * 8, maxlen=8)
         self._bursts: deque[int] = deque()
-        self._throws: deque[int] = deque([-WINDOW] * MOST_THROWS, maxlen=MOST_THROWS)
+        self._throws: deque[int] = deque([-WINDOW] * LASTING, maxlen=LASTING)
         self.worst = (0.0, 0.0)
         self._step = self._zigzags = 0
         self._largest = self._strength = 0.0
@@ -289,12 +290,12 @@ class RingingWatch:
         return b > LOCAL_SHARE * force
 
     def _is_burst(self) -> bool:
-        if self._bursts and self._step - self._bursts[-1] < APART:
+        *before, a, b, c = (bend[3] for bend in self._bends)
+        if self._bursts and self._step - self._bursts[-1] < len(before):
             return False
-        sizes = [bend[3] for bend in self._bends]
-        strength = max(sizes[-3:])
+        strength = max(a, b, c)
         lasting = self._zigzags >= LASTING and strength > KEPT * self._strength
-        if not (lasting or strength > STRONGER * max(sizes[:5])):
+        if not (lasting or strength > STRONGER * max(before)):
             return False
         self._strength = strength
         return True
@@ -313,7 +314,7 @@ class RingingWatch:
 
     @property
     def throws(self) -> bool:
-        """Return whether the run rings and `MOST_THROWS` forces within the window have thrown masses."""
+        """Return whether the run rings and `LASTING` forces within the window have thrown masses."""
         return self.rings and self._throws[0] > self._step - WINDOW
 
 

@@ -86,11 +86,6 @@ def _pin(tolerance: float, bearing: JournalBearing) -> JournalBearing:
 steel_pin, coarse_pin = partial(_pin, 0.02), partial(_pin, 0.08)
 
 
-def piezoviscous(bearing: JournalBearing) -> JournalBearing:
-    """Return the bearing with a mineral oil's Roelands law."""
-    return _oil(bearing, pressure_law=PIEZOVISCOSITY)
-
-
 def heated(bearing: JournalBearing) -> JournalBearing:
     """Return the bearing with a temperature law of its oil and a thermal option; existing ones are kept.
 
@@ -149,11 +144,6 @@ def _thinner(factor: float, bearing: JournalBearing) -> JournalBearing:
     return _oil(bearing, viscosity=factor * bearing.lubricant.viscosity)
 
 
-def thinning(bearing: JournalBearing) -> JournalBearing:
-    """Return the bearing with a multigrade oil's Carreau law."""
-    return _oil(bearing, shear_law=MULTIGRADE)
-
-
 def untouching(bearing: JournalBearing) -> JournalBearing:
     """Return the bearing without contact and wear."""
     given = [name for name in ("asperity", "contact", "wear") if getattr(bearing, name) is not None]
@@ -201,11 +191,13 @@ def _on_grid(n_theta: int, n_z: int, bearing: JournalBearing) -> JournalBearing:
     return replace(bearing, film=replace(bearing.film, n_theta=n_theta, n_z=n_z))
 
 
-# Switches that remove an effect, or add one that needs no numbers.
+# Switches that remove an effect, or add one that does not depend on the bearing.
 rigid: Switch = partial(replace, bush=None)
 rigid_journal: Switch = partial(replace, journal=None)
 isoviscous: Switch = partial(_oil, pressure_law=None)
+piezoviscous: Switch = partial(_oil, pressure_law=PIEZOVISCOSITY)
 newtonian: Switch = partial(_oil, shear_law=None)
+thinning: Switch = partial(_oil, shear_law=MULTIGRADE)
 smooth: Switch = partial(replace, roughness=None)
 unprofiled: Switch = partial(replace, profile=None)
 unworn: Switch = partial(replace, wear=None)
