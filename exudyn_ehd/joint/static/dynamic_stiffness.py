@@ -316,6 +316,19 @@ def require_derivatives(evaluation: Evaluation, where: str) -> None:
             )
 
 
+def whirl_stiffness(stiffness: np.ndarray, damping: np.ndarray) -> tuple[float, float]:
+    """Stiffness k at the threshold of whirl, see `whirl_threshold`, and the determinant of K - k.
+
+    nan if the trace of the damping is not positive.
+    """
+    (kxx, kxy), (kyx, kyy) = stiffness
+    (cxx, cxy), (cyx, cyy) = damping
+    if cxx + cyy <= 0.0:
+        return math.nan, math.nan
+    k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / (cxx + cyy)
+    return k, (k - kxx) * (k - kyy) - kxy * kyx
+
+
 def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) -> tuple[float, float]:
     """Whirl ratio and critical mass of a rigid rotor on one bearing (half of a symmetric rotor on two).
 
@@ -337,16 +350,11 @@ def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) ->
     whirl_ratio, critical_mass : float
         (nan, inf) if stable at any mass; (nan, 0) if unstable at any mass, because k is not positive or C is singular.
     """
-    (kxx, kxy), (kyx, kyy) = stiffness
-    (cxx, cxy), (cyx, cyy) = damping
-    trace = cxx + cyy
-    if trace <= 0.0:
-        return math.nan, 0.0
-    k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / trace
-    above, below = (k - kxx) * (k - kyy) - kxy * kyx, cxx * cyy - cxy * cyx
+    k, above = whirl_stiffness(stiffness, damping)
+    below = damping[0, 0] * damping[1, 1] - damping[0, 1] * damping[1, 0]
     # an unbroken film about the centre has k = 0, with round-off of either sign
-    rounding = ROUNDING * max(map(abs, (kxx, kxy, kyx, kyy)))
-    if k < -rounding or (k <= rounding and above <= 0.0):
+    rounding = ROUNDING * float(np.abs(stiffness).max())
+    if math.isnan(k) or k < -rounding or (k <= rounding and above <= 0.0):
         return math.nan, 0.0
     k = max(k, 0.0)
     if below == 0.0 < above:

@@ -34,6 +34,7 @@ from exudyn_ehd.joint.static.dynamic_stiffness import (
     response_of,
     slow_motions,
     threshold,
+    whirl_stiffness,
     whirl_threshold,
 )
 from exudyn_ehd.joint.static.pad_equilibrium import TiltingPadResult, pad_equilibrium
@@ -425,17 +426,11 @@ def critical_mass_error(bearing: JournalBearing, stiffness: np.ndarray, damping:
     columns = getattr(bearing.sized_film, "n_theta", None)
     if columns is None or math.isinf(bearing.closure.cavity_pressure):
         return 0.0
-    (kxx, kxy), (kyx, kyy) = stiffness
-    (cxx, cxy), (cyx, cyy) = damping
-    if cxx + cyy <= 0.0:
+    _, above = whirl_stiffness(stiffness, damping)
+    if math.isnan(above) or above == 0.0:
         return math.inf
-    k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / (cxx + cyy)
-    b = -0.25 * (kxy - kyx) ** 2
-    a = (k - kxx) * (k - kyy) - kxy * kyx + b
-    if a == b:
-        return math.inf
-    grid = 96.0 / columns
-    cancelled = ((abs(a) + abs(b)) / (a - b)) ** 2
+    b, grid = -0.25 * (stiffness[0, 1] - stiffness[1, 0]) ** 2, 96.0 / columns
+    cancelled = ((abs(above + b) + abs(b)) / above) ** 2
     clips, lined = bearing.closure.clips, bearing.closure.line_in_cells
     inside = (IN_CELLS * cancelled + (0.0 if clips else LEFT_IN_CELLS)) * grid**2
     error = inside if lined else (CLIPPED if clips else ON_GRID) * grid * cancelled
