@@ -33,9 +33,9 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.solid.total_lagrange import TotalLagrange, sparse_factor
 from exudyn_ehd.status import SMALL, Status
 
-# Contraction rates of the corrections: above the first the solid is linearised again; up to the second and the third
-# the present K is used for an approximate and for an exact tangent. Smaller: more factors, more accurate tangents.
-SLOWEST, NEARBY, EXACT = 0.3, 0.05, 1e-3
+# Contraction rates of the corrections: above the first the solid is linearised again, above the second for an exact
+# tangent. Smaller: more factors, more accurate tangents.
+SLOWEST, EXACT = 0.3, 1e-3
 # Number of unit loads that are solved for at once. Larger: more memory.
 COLUMNS = 256
 NO_BALANCE = (
@@ -83,13 +83,14 @@ class SolidElasticity(Elasticity):
     def tangent(self, evaluation: NodalEvaluation, exact: bool) -> np.ndarray:
         """Return `Elasticity.tangent`.
 
-        Not ``exact``: with radial loads only, and with the stiffness of a nearby state. ``exact``: with all forces on
+        Not ``exact``: with radial loads only, and with the stiffness of the last search. ``exact``: with all forces on
         the bore's nodes, and with the solid linearised about the last balance or close to it. Forces along z are
         replaced by loads on q that displace the bore equally.
         """
-        self._require(EXACT if exact else NEARBY)
         if not exact:
             return evaluation.tangent()
+        if self._contraction > EXACT:
+            self._renew()
         bore, moves = self.solid.mesh.bore, self._moves
         wrench, nodal = evaluation.tangent_at(bore.positions + self.displacements[bore.nodes])
         loads = nodal[:, :2].reshape(-1, nodal.shape[2])
@@ -256,11 +257,6 @@ class SolidElasticity(Elasticity):
         stiffness = np.diag(np.where(self._moves, 0.0, np.abs(np.diag(inner)).max() / SMALL))
         stiffness[np.ix_(self._moves, self._moves)] = 0.5 * (inner + inner.T)
         return stiffness
-
-    def _require(self, contraction: float) -> None:
-        """Linearise the solid about its last balance if the corrections contracted more slowly than this rate."""
-        if self._contraction > contraction:
-            self._renew()
 
     def _renew(self) -> None:
         self.stiffness = self._linearise()
