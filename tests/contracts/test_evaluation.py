@@ -40,7 +40,8 @@ def cases():
 
 def loads_of(evaluation):
     """Wrench and loads on the coordinates of flexible surfaces."""
-    return np.concatenate((evaluation.wrench, getattr(evaluation, "bore_load", np.zeros(0))))
+    bore = getattr(evaluation, "bore", None)
+    return np.concatenate((evaluation.wrench, np.zeros(0) if bore is None else bore.load))
 
 
 def check_evaluation(model, motion, history, step, evaluation, directions):

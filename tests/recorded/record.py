@@ -143,9 +143,10 @@ def film_record(row, seed):
             )
             # a film that remembers nothing leaves no history
             kept = [getattr(history, name, None) for name in FIELDS]
+            bore = getattr(evaluation, "bore", None)
             out[n, 1:] = np.concatenate(
                 (
-                    _loads(evaluation.wrench, getattr(evaluation, "bore_load", np.zeros(0))),
+                    _loads(evaluation.wrench, np.zeros(0) if bore is None else bore.load),
                     _loads(tangent[:6], tangent[6:]).T.ravel(),
                     [values.get(name, np.nan) for name in QUANTITIES],
                     *(np.full(2, np.nan) if x is None else _sums(np.ravel(x)) for x in kept),

@@ -116,7 +116,7 @@ class ModalFilmElement(FilmElement):
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         evaluation = elastic(trial)
         held = self.stiffness * trial.motion[MOTION_SIZE:][: self.stiffness.size]
-        return np.concatenate((self._wrench_map() @ evaluation.wrench, evaluation.bore_load - held))
+        return np.concatenate((self._wrench_map() @ evaluation.wrench, evaluation.bore.load - held))
 
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         # tangent of wrench and loads on the modes, combined by f_q and f_qt
@@ -214,7 +214,7 @@ class NodalFilmElement(FilmElement):
         out = dict(evaluation.quantities())
         # the model includes only the work on the radial displacement, not that of the spread forces
         rest = self.nodal_forces(evaluation)
-        rest[:, :2] -= evaluation.bore_load.reshape(-1, 2)
+        rest[:, :2] -= evaluation.bore.load.reshape(-1, 2)
         out["power_loss"] -= float(np.sum(rest * (self.drift @ self.sides[0].frame[:, :3])))
         return out
 

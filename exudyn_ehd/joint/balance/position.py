@@ -44,6 +44,11 @@ class LoadSearch(Balance):
     3. damped steps from the given motion;
     4. damped steps from inside the bearing, `INSIDE`;
     5. in a lobed bearing, damped steps from `opposed`.
+
+    Attributes
+    ----------
+    held_back : float
+        Resistance of damped steps, N/m.
     """
 
     def find(self, motion: np.ndarray, near: Place | None = None) -> Place:
@@ -57,6 +62,7 @@ class LoadSearch(Balance):
             If none was found.
         """
         self.first, carried = self.model.parts.evaluations, 0.0
+        self.held_back = 10.0 * self.size / self.model.bearing.radial_clearance
         self.nearest: Place | None = None
         start = self.temperature_of(None if near is None else near.film.history)
         found = self.attempt(motion, start)
@@ -69,11 +75,6 @@ class LoadSearch(Balance):
         if found is None:
             raise self._not_found(carried * self.size)
         return found
-
-    @property
-    def held_back(self) -> float:
-        """Resistance of a damped search, N/m."""
-        return 10.0 * self.size / self.model.bearing.radial_clearance
 
     def tolerance(self, motion: np.ndarray) -> float:
         """Tolerance of the unbalance over the load."""

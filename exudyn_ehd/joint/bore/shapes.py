@@ -232,6 +232,11 @@ def _with_moments(
     return out
 
 
+def dense(matrix: np.ndarray | csr_matrix) -> np.ndarray:
+    """Return a matrix as an array."""
+    return matrix if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray())
+
+
 class Bore(abc.ABC):
     """Flexible bore with k coordinates on an (n, m) film grid.
 
@@ -240,21 +245,16 @@ class Bore(abc.ABC):
     grid : FilmGrid
     shapes : array or csr matrix (n m, k)
         S.
-    own : int
-        Number of the bore's coordinates; those of an elastic journal follow.
+    size, own : int
+        k, and number of the bore's coordinates; those of an elastic journal follow.
     twist : (k,) array or None
         Generalised loads on the coordinates by a moment of 1 Nm of the film about the axis, 1/m; None: zero.
     """
 
     def __init__(self, grid: FilmGrid, shapes: np.ndarray | csr_matrix, own: int) -> None:
-        self.grid, self.shapes, self.own = grid, shapes, own
+        self.grid, self.shapes, self.size, self.own = grid, shapes, int(shapes.shape[1]), own
         self._onto = shapes.T if isinstance(shapes, np.ndarray) else shapes.T.tocsr()
         self.twist: np.ndarray | None = None
-
-    @property
-    def size(self) -> int:
-        """k, the number of coordinates."""
-        return int(self.shapes.shape[1])
 
     def displacement(self, q: np.ndarray) -> np.ndarray:
         """S q (n, m) for coordinates or rates q (k,)."""
@@ -266,8 +266,7 @@ class Bore(abc.ABC):
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k) for a field f (n, m)."""
-        found = self._onto @ (diags_array(field.ravel()) @ self.shapes)
-        return found if isinstance(found, np.ndarray) else np.asarray(found.toarray())
+        return dense(self._onto @ (diags_array(field.ravel()) @ self.shapes))
 
     def without_journal(self, q: np.ndarray) -> np.ndarray:
         """Return the displacement (n, m) of the bore itself, without an elastic journal's part of q."""

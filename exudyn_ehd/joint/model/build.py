@@ -237,13 +237,8 @@ class TurningModel(ElasticBearingModel):
             start_angle=start_angle,
             effects=effects,
         )
-        self.needs_spin = True
+        self.needs_spin, self.size = True, turning.count
         self._coordinates = np.zeros(self.size)
-
-    @property
-    def size(self) -> int:
-        """k, the number of the body's modes."""
-        return self.turning.count
 
     def _journal(self, motion: np.ndarray, spin: float) -> JournalMotion:
         """Set the motion (10 + 2 k,), transformed to waves; with (10,) the journal is undeformed at rest."""

@@ -76,11 +76,6 @@ class ElasticEvaluation(Evaluation):
     bore: BoreState = dataclasses.field(repr=False)
     closing: ClosingFilm | None = None
 
-    @property
-    def bore_load(self) -> np.ndarray:
-        """Q (k,), N; nan if there is no film."""
-        return self.bore.load
-
     def tangent(self, slow_motion: bool = False) -> np.ndarray:
         """d (wrench, Q) / d motion (6 + k, 10 + 2 k); nan without a film."""
         return self._tangent((1.0, 0.0), (0.0, 1.0))
@@ -173,6 +168,11 @@ class ElasticBearingModel(BearingModel):
         Elasticity that resists q in a steady state.
     start_angle, effects
         As in `BearingModel`.
+
+    Attributes
+    ----------
+    size : int
+        k, the number of coordinates in its motion.
     """
 
     flexible = True
@@ -188,15 +188,10 @@ class ElasticBearingModel(BearingModel):
     ) -> None:
         super().__init__(bearing, start_angle=start_angle, effects=effects)
         self.make_bore, self.bore = bore, bore(self.grid)
-        self.elasticity = elasticity
+        self.elasticity, self.size = elasticity, self.bore.size
         self._parallel = not all(getattr(part, "tilted", True) for part in (bearing.bush, bearing.journal))
         self._coordinates = np.zeros(self.bore.size)
         self._end_load = end_load(self.bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
-
-    @property
-    def size(self) -> int:
-        """k, the number of coordinates in its motion."""
-        return self.bore.size
 
     @cached_property
     def bore_forces(self) -> BoreForces:
@@ -225,23 +220,17 @@ class ElasticBearingModel(BearingModel):
         k, moved = self.bore.size, journal.motion[MOTION_SIZE:]
         load = np.full(k, np.nan)
         if oil is not None:
-            load = self.bore.load(self._pressure_field(oil, pressing))
+            # force of film and contact on the bore at every vertex, N, outward
+            field = oil.P * self.scales.pressure
+            for P in () if pressing is None else pressing.P:
+                field += P
+            load = self.bore.load(field * (self.grid.weight * self.grid.reference_length**2))
             if self._end_load is not None:
                 load += self._end_load
             if self.bore.twist is not None:
                 load -= self.bore.twist * moment
         assert self._displacement is not None
         return BoreState(moved[:k], moved[k:], self._displacement, load)
-
-    def _pressure_field(self, oil: OilFields, pressing: ContactFields | None) -> np.ndarray:
-        """Force of film and contact on the bore at every vertex (n, m), N, outward."""
-        area = self.grid.weight * self.grid.reference_length**2
-        field = oil.P * area
-        field *= self.scales.pressure
-        if pressing is not None:
-            for P in pressing.P:
-                field += P * area
-        return field
 
     def _result(
         self, status: Status, journal: JournalMotion, iterations: int, gap: float, film: SolvedFilm | None = None

@@ -36,11 +36,11 @@ from scipy.sparse.linalg import splu
 
 from exudyn_ehd.film.reynolds.gap import Gradients
 from exudyn_ehd.film.solvers.liner import LinerFilm
-from exudyn_ehd.joint.bore.shapes import Bore
+from exudyn_ehd.joint.bore.shapes import Bore, dense
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import LARGEST_SPREAD, MOTION_SIZE, SolvedFilm
-from exudyn_ehd.joint.tangent.bore import Balances, dense, load_columns
+from exudyn_ehd.joint.tangent.bore import Balances, load_columns
 from exudyn_ehd.joint.tangent.wrench import balance_gradients, true_fills, wrench_rows
 from exudyn_ehd.status import FilmError
 

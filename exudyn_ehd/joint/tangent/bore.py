@@ -19,7 +19,7 @@ from scipy.sparse import csc_matrix, csr_matrix, diags_array
 from exudyn_ehd.film.cavitation.linear_film import pressures_by_linear
 from exudyn_ehd.film.reynolds.gap import transposed_slopes
 from exudyn_ehd.film.surfaces.contact import contact_weights
-from exudyn_ehd.joint.bore.shapes import Bore
+from exudyn_ehd.joint.bore.shapes import Bore, dense
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.wrench import (
     adjoint_rows,
@@ -150,11 +150,6 @@ def pressures_by_unknowns(film: SolvedFilm) -> csr_matrix | csc_matrix:
         return at_unknowns(film, (w.active | y.fixed).astype(float))
     by_linear = pressures_by_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active)
     return (by_linear + diags_array(y.fixed.ravel().astype(float))) @ at_unknowns(film, film.solver.ones)
-
-
-def dense(matrix: np.ndarray | csr_matrix) -> np.ndarray:
-    """Return a matrix as an array."""
-    return matrix if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray())
 
 
 def at_unknowns(film: SolvedFilm, field: np.ndarray) -> csc_matrix:

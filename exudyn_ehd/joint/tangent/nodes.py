@@ -26,14 +26,13 @@ from exudyn_ehd.film.banded.substitution import TILE
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.gap import Gradients
 from exudyn_ehd.film.solvers.film import ends_of_cavities
-from exudyn_ehd.joint.bore.shapes import NodalBore
+from exudyn_ehd.joint.bore.shapes import NodalBore, dense
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import (
     Balances,
     at_unknowns,
     bore_tangent,
     contact_slope,
-    dense,
     pressures_by_unknowns,
 )
 from exudyn_ehd.joint.tangent.wrench import couette_field, motion_tangent, ratio_of, true_fills, wrench_rows

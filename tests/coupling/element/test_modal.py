@@ -179,7 +179,7 @@ def test_modes_follow_the_film_at_every_accepted_step():
     run(mbs, 50)
     q = np.array(mbs.GetNodeOutput(joint.element.bore_nodes[0], exu.OutputVariableType.Coordinates))
     element = joint.element
-    load = element.look(mbs, mbs.systemData.GetTime(), exu.ConfigurationType.Current).evaluation.bore_load
+    load = element.look(mbs, mbs.systemData.GetTime(), exu.ConfigurationType.Current).evaluation.bore.load
     # modes in equilibrium apart from the inertia of their numerical mass
     assert np.allclose(element.stiffness * q, load, rtol=0, atol=1e-3 * np.abs(load).max())
     assert np.abs(q).max() > 1e-7

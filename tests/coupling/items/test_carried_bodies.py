@@ -212,7 +212,7 @@ def test_modal_bushes_start_in_equilibrium_on_every_body(kind, measured):
     q = np.array(mbs.GetNodeOutput(element.bore_nodes[0], exu.OutputVariableType.Coordinates))
     evaluation = element.steps.look_at_accepted(mbs)[1].evaluation
     assert np.abs(q).max() > 1e-8
-    load, spring = evaluation.bore_load, element.stiffness * q
+    load, spring = evaluation.bore.load, element.stiffness * q
     # velocities of markers come from differences of positions
     measured("force on the modes", np.abs(load - spring).max() / np.abs(spring).max(), 1e-6)
     mbs.SolveDynamic(scenes.settings(2e-5, 2, tolerance=1e-8))

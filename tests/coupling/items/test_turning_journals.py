@@ -157,7 +157,7 @@ def test_film_power_is_that_of_all_coordinates():
     slip = A.T @ (journal[:, 4] - housing[:, 4]) - np.cross(A.T @ housing[:, 5], r)
     F, M = found.wrench[:3], found.wrench[3:]
     # of the journal's point at the housing's origin, relative
-    power = F @ (slip - np.cross(spin, r)) + M @ spin + found.bore_load @ found.bore.rates
+    power = F @ (slip - np.cross(spin, r)) + M @ spin + found.bore.load @ found.bore.rates
     assert force @ q_t == pytest.approx(power, rel=1e-9)
     # the film takes what its own balance says, to the grid's error of what the tilting journal does
     assert -power == pytest.approx(found.quantities()["power_loss"], rel=1e-3)

@@ -77,7 +77,7 @@ def test_films_on_thin_tongues_are_found():
         assert evaluation.status is ehd.Status.CONVERGED
         assert model.parts.evaluations - before < 400
         held = model.elasticity.force(evaluation.bore.coordinates)
-        np.testing.assert_allclose(evaluation.bore_load, held, atol=1e-8 * np.abs(held).max())
+        np.testing.assert_allclose(evaluation.bore.load, held, atol=1e-8 * np.abs(held).max())
 
 
 @pytest.mark.slow
@@ -89,7 +89,7 @@ def test_the_film_on_a_tongue_is_the_one_reached_from_the_undeformed_bore():
     others = 0
     for model, motion in tongues(1, 8, ((4e-4, 8), (1e-3, 6))):
         evaluation = model.evaluate_steady(motion)
-        found, load = evaluation.bore.coordinates.copy(), evaluation.bore_load
+        found, load = evaluation.bore.coordinates.copy(), evaluation.bore.load
         q, newton = np.zeros_like(found), Newton(model, motion, (None, 0.0, 0.0))
         part = min(1.0, 0.9 * C / float(np.hypot(*motion[:2])))
         for step in range(150):
@@ -148,7 +148,7 @@ def test_films_on_soft_bores_are_found_unless_they_close_at_an_end(seed, closed)
         if i < closed:
             assert evaluation.status is ehd.Status.CONVERGED
             held = model.elasticity.force(evaluation.bore.coordinates)
-            np.testing.assert_allclose(evaluation.bore_load, held, atol=1e-8 * np.abs(held).max())
+            np.testing.assert_allclose(evaluation.bore.load, held, atol=1e-8 * np.abs(held).max())
             continue
         assert evaluation.status is not ehd.Status.CONVERGED
         assert evaluation.closing.part < 1.0 and abs(evaluation.closing.z) == 0.5 * L

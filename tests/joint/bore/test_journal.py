@@ -93,7 +93,7 @@ def test_tangent(pin, bush, option):
             loads, same = [], True
             for sign in (1.0, -1.0):
                 e = probe.evaluate(motion + sign * size * change, history, step)
-                loads.append(np.concatenate((e.wrench, e.bore_load)))
+                loads.append(np.concatenate((e.wrench, e.bore.load)))
                 same &= np.array_equal(probe.solver.work.active, active)
             if same:
                 break
@@ -140,7 +140,7 @@ def _following(model, motion, i, rate):
     q, stiffness = model.evaluate_steady(at_rest).bore.coordinates.copy(), model.elasticity.stiffness
     for _ in range(8):
         e = model.evaluate(np.concatenate((motion, q, q_t)))
-        q = q + np.linalg.solve(stiffness - e.combined_tangent(1.0, 0.0)[6:, 10:], e.bore_load - stiffness @ q)
+        q = q + np.linalg.solve(stiffness - e.combined_tangent(1.0, 0.0)[6:, 10:], e.bore.load - stiffness @ q)
     return model.evaluate(np.concatenate((motion, q, q_t))).wrench
 
 
@@ -173,7 +173,7 @@ def test_pressure_does_not_turn_a_deflected_pin(pin, bush):
         cos, sin = (bore.own + np.flatnonzero((waves == n) & (phases > 0.1) == kind) for kind in (False, True))
         cos = cos[waves[cos - bore.own] == n]
         turned[cos], turned[sin] = n * q[sin], -n * q[cos]
-    work = e.bore_load * turned
+    work = e.bore.load * turned
     # of the pin's modes; 1e-9 of the balance that the search leaves
     assert abs(work[bore.own :].sum()) < 1e-9 * np.abs(work[bore.own :]).sum()
 

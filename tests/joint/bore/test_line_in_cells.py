@@ -95,7 +95,7 @@ def worst_error(evaluation, probe, args, unit, rng):
             ends = []
             for sign in (1.0, -1.0):
                 e = probe.evaluate(motion + sign * size * change, *args)
-                ends.append((np.concatenate((e.wrench, e.bore_load)), None if nodal is None else e.nodal_forces()))
+                ends.append((np.concatenate((e.wrench, e.bore.load)), None if nodal is None else e.nodal_forces()))
             # loads at vertices end with the round-off of the largest one
             round_off = np.where(np.arange(rows.size) < 6, 0.0, 1e-14 * np.abs(ends[0][0][6:]).max() / size)
             off = np.abs(tangent @ change - (ends[0][0] - ends[1][0]) / (2.0 * size)) - round_off
@@ -218,5 +218,5 @@ def test_oil_is_in_balance_and_films_do_not_know_their_start(kind):
             assert inflow.sum() == pytest.approx(gain, abs=1e-11 * (np.abs(inflow).sum() + abs(gain)) + 1e-9)
             fresh.forget()
             cold = fresh.evaluate(motion, *args)
-            for one, other in ((warm.wrench, cold.wrench), (warm.bore_load, cold.bore_load)):
+            for one, other in ((warm.wrench, cold.wrench), (warm.bore.load, cold.bore.load)):
                 assert np.abs(one - other).max() < 1e-12 * np.abs(other).max()

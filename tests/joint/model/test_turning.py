@@ -107,13 +107,13 @@ def test_journal_and_frame_turned_by_the_same_angle_are_the_same_film(steps):
     model, rng = model_of(journal(waves)), np.random.default_rng(steps + 20)
     motion, angle = random_motion(rng, 5), 2.0 * np.pi * steps / 48
     there = model.evaluate(motion, spin=angle)
-    found = [there.wrench, there.bore_load, there.film.extra.height.copy(), there.minimum_gap]
+    found = [there.wrench, there.bore.load, there.film.extra.height.copy(), there.minimum_gap]
     here = model.evaluate(turned(motion, angle), spin=0.0)
     back = np.concatenate([turned(np.tile(found[0][a : a + 2], 4), angle)[:2] for a in (0, 3)])
     for own, other in (
         (back, here.wrench[[0, 1, 3, 4]]),
         (found[0][[2, 5]], here.wrench[[2, 5]]),
-        (found[1], here.bore_load),
+        (found[1], here.bore.load),
         (np.roll(found[2], -steps, axis=0), here.film.extra.height),
     ):
         assert np.abs(own - other).max() < 1e-9 * np.abs(other).max()
@@ -127,8 +127,7 @@ def test_body_turned_by_hand_is_the_journal_at_that_angle(share):
     motion = random_motion(np.random.default_rng(share), 5)
     here = model_of(journal(waves)).evaluate(motion, spin=angle)
     there = model_of(journal(waves, turn=angle)).evaluate(motion, spin=0.0)
-    for name in ("wrench", "bore_load"):
-        own, other = getattr(here, name), getattr(there, name)
+    for own, other in ((here.wrench, there.wrench), (here.bore.load, there.bore.load)):
         assert np.abs(own - other).max() < 1e-9 * np.abs(other).max()
     np.testing.assert_allclose(here.film.extra.height, there.film.extra.height, atol=1e-9 * 0.2)
 
@@ -151,7 +150,7 @@ def test_single_mode_is_the_plain_field_of_its_angle(measured):
     rate = S * q_t - omega * slope * q
     measured("rate", np.abs(model._rate * gap - rate).max() / np.abs(rate).max(), 1e-3)
     force = found.film.oil.P * found.film.scales.pressure * grid.weight * R**2
-    measured("load", abs(found.bore_load[0] / np.sum(force * S) - 1.0), 1e-3)
+    measured("load", abs(found.bore.load[0] / np.sum(force * S) - 1.0), 1e-3)
     moment = np.sum(force * -slope * q)
     measured("moment", abs(found.moment / moment - 1.0), 1e-3)
 
@@ -212,7 +211,7 @@ def test_tangent_is_the_derivative(name):
                 at = np.append(motion, spin)
                 at[i] += h * size
                 found = model.evaluate(at[:-1], history, 1e-4, at[-1])
-                ends.append(np.concatenate((found.wrench, found.bore_load)))
+                ends.append(np.concatenate((found.wrench, found.bore.load)))
             numeric[:, i] = (ends[0] - ends[1]) / (2.0 * size_of)
         errors = np.abs(numeric - exact) / scale[:, None]
         assert errors.max() < 2e-6
@@ -243,7 +242,7 @@ def test_power_of_all_coordinates_is_what_the_film_dissipates(measured):
     centre = np.array([x, y, 0.0])
     about = F[3:] - np.cross(centre, F[:3])
     power = -(F[0] * x_t + F[1] * y_t - F[3] * by_t + F[4] * bx_t + omega * (about @ axis))
-    power -= found.bore_load @ motion[15:]
+    power -= found.bore.load @ motion[15:]
     mu, h, p = 0.01, model.solver.H * C, found.film.oil.P * found.film.scales.pressure
     width = g.width_x[0] * R
     along_x = (np.roll(p, -1, axis=0) - p) / width

@@ -98,7 +98,7 @@ def test_pressure_that_falls_from_end_to_end_deforms_the_bore_alike_on_any_grid(
     bush = modal(tolerance=0.1)
     bearing = make_bearing(bush, end_pressures=(p, 0.0), film=ehd.FiniteLength(n_theta=64, n_z=n_z))
     model = build_model(bearing)
-    load = model.evaluate(np.zeros(10)).bore_load
+    load = model.evaluate(np.zeros(10)).bore.load
     modes = bore_modes(bush)
     mesh = modes.mesh
     loads = pressure_loads(mesh.bore, len(mesh.nodes), [lambda theta, zeta: 0.5 * p * (1.0 - zeta)])[:, 0]
@@ -183,7 +183,7 @@ def test_bore_settles_in_few_newton_steps():
     # convex, from the undeformed bore: four steps near the solution and a few on the way
     assert model.parts.evaluations - before <= 11
     held = model.elasticity.force(evaluation.bore.coordinates)
-    assert np.allclose(evaluation.bore_load, held, rtol=0, atol=1e-6)
+    assert np.allclose(evaluation.bore.load, held, rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("make", sample([modal, nodal], 0), ids=["modal", "nodal"])
@@ -240,7 +240,7 @@ def test_damping_is_that_of_a_bore_that_follows_slowly():
 
         def lack(scaled):
             q = scaled * C
-            return (model.evaluate(motion(q)).bore_load - model.elasticity.force(q)) / 20e3 / C
+            return (model.evaluate(motion(q)).bore.load - model.elasticity.force(q)) / 20e3 / C
 
         found = root(lack, at_rest / C, tol=1e-12)
         assert np.abs(found.fun).max() * C < 1e-6

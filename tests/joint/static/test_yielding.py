@@ -49,7 +49,7 @@ def by_differences(made, rest):
     for place in where:
         size = 1e-4 * C * (1.0 if place < 2 or 10 <= place < 10 + k else SPEED)
         ends = [model.evaluate(motion + sign * size * np.eye(motion.size)[place]) for sign in (1.0, -1.0)]
-        loads = [np.concatenate((e.wrench[:2], e.bore_load)) for e in ends]
+        loads = [np.concatenate((e.wrench[:2], e.bore.load)) for e in ends]
         columns.append((loads[0] - loads[1]) / (2.0 * size))
     J, K = np.array(columns).T, model.elasticity.stiffness
 
@@ -189,10 +189,10 @@ def forced_with_bore(made, rest, nu, steps, periods):
                 motion[10 : 10 + k], motion[10 + k :] = q, (q - before) / h
                 film = model.evaluate(motion, history, h)
                 T = film.tangent()
-                q = q + np.linalg.solve(K - T[6:, 10 : 10 + k] - T[6:, 10 + k :] / h, film.bore_load - K @ q)
+                q = q + np.linalg.solve(K - T[6:, 10 : 10 + k] - T[6:, 10 + k :] / h, film.bore.load - K @ q)
             motion[10 : 10 + k], motion[10 + k :] = q, (q - before) / h
             film = model.evaluate(motion, history, h)
-            assert np.linalg.norm(film.bore_load - K @ q) < 1e-9 * np.linalg.norm(film.bore_load)
+            assert np.linalg.norm(film.bore.load - K @ q) < 1e-9 * np.linalg.norm(film.bore.load)
             history = film.history()
             forces.append(film.wrench[:2])
         last = nu * times[-steps:]

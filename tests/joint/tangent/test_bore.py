@@ -76,7 +76,7 @@ def check_tangent(bush, option, every):
                 moved = motion.copy()
                 moved[j] += sign * size * unit[j]
                 e = probe.evaluate(moved, history, step)
-                loads.append(np.concatenate((e.wrench, e.bore_load)))
+                loads.append(np.concatenate((e.wrench, e.bore.load)))
                 same &= np.array_equal(probe.solver.work.active, active)
             if same:
                 break
