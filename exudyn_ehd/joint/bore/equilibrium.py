@@ -35,9 +35,8 @@ SETTLED, ROUNDED = 1e-11, 1e-8
 # Largest number of halvings of a step. Larger: a hopeless search takes longer.
 HALVINGS = 12
 # Pseudo-transient continuation of a viscous bore: tau / h at its start; relative change of q in a step from which on
-# Newton's method is tried; number of film solves after which it is not begun or ends. It fails at a step h of less than
-# `ROUNDING` times tau.
-SLOWEST, NEAR, LARGEST_EFFORT = 10.0, 0.02, 600
+# Newton's method is tried. It fails at a step h of less than `ROUNDING` times tau.
+SLOWEST, NEAR = 10.0, 0.02
 # Largest number of film solves of a whole search. Larger: a hopeless search takes longer.
 MOST_FILMS = 6000
 
@@ -176,13 +175,13 @@ class Newton(Generic[Result]):
     def settle(self, q: np.ndarray, part: float) -> Result | None:
         """Find the balance by full Newton steps from q; else by the motion of a viscous bore; else by halved steps."""
         found = self.solve(q, part, straight=True)
-        if found is None and self.trials < LARGEST_EFFORT:
+        if found is None:
             found = self._come_to_rest(q, part) or self.solve(q, part)
         return found
 
     def _come_to_rest(self, q: np.ndarray, part: float) -> Result | None:
-        slowness, start = SLOWEST, self.trials
-        while slowness * ROUNDING < 1.0 and self.trials - start < LARGEST_EFFORT:
+        slowness = SLOWEST
+        while slowness * ROUNDING < 1.0 and self.trials < MOST_FILMS:
             near = self.solve(q, part, slowness)
             if near is None:
                 slowness *= 4.0

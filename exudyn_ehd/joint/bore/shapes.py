@@ -47,13 +47,12 @@ from exudyn_ehd.status import ROUNDING, SMALL
 
 # Number of vertices of an interpolation. Gauss points of a panel are exact for cubics times quadratic shape functions.
 STENCIL = 4
-# Fraction of an interval below which a panel is omitted.
-TOUCHING = 1e-3
+# Fraction of an interval below which a panel is omitted, and of half the length within which an edge counts as lying on
+# the film's end. Larger: less accurate loads of films on edges close to vertices and to ends.
+TOUCHING = 1e-4
 # Size of the change in `_along` that does not vanish for linear pressures; that of the others is 1. Smaller: it is used
 # less.
 LINEAR = 0.03
-# Distance, as a fraction of half the length, within which an edge counts as lying on the film's end.
-RIM = 1e-4
 # Largest number of points times faces that are searched at once. Larger: more memory.
 LARGEST_BLOCK = 2e7
 
@@ -123,7 +122,7 @@ def _near_rims(faces: Surface, grid: FilmGrid) -> np.ndarray:
     At such edges the displacement of a bore may jump. Edges on the ends of the film or beyond do not count.
     """
     R, m, reach = grid.reference_length, grid.z.size, STENCIL // 2
-    end = float(grid.z[-1]) * (1.0 - RIM)
+    end = float(grid.z[-1]) * (1.0 - TOUCHING)
     near = np.clip(np.arange(m) + reach * np.array([[-1], [1]]), 0, m - 1)
     low, high = np.clip(grid.z[near], -end, end)
     middle, half, bottom, top = faces.rims.T
