@@ -45,9 +45,9 @@ LOAD_TOLERANCE = 1e-10
 ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
 # Damping factor of the temperature's steps, below which a search without progress gives up.
 WEAKEST = 0.1
-# Changes of the temperature in K: the largest one in a round; the one below which Anderson's acceleration is used; the
-# one that has the same scaled size as a move by the clearance.
-LARGEST_CHANGE, ACCELERATED, TYPICAL_CHANGE = 50.0, 5.0, 30.0
+# Changes of the temperature in K: the largest one in a round, of the same scaled size as a move by the clearance;
+# the one below which Anderson's acceleration is used.
+LARGEST_CHANGE, ACCELERATED = 50.0, 5.0
 # Largest number of differences of past rounds that Anderson's acceleration combines.
 DEPTH = 10
 # Temperature in K above which a search fails. It is far above `HOTTEST`, because films during a search may be hotter
@@ -183,8 +183,8 @@ class Balance:
         return float((np.abs(place.unbalance) / self._sizes).max(initial=0.0)) / self.share
 
     def error(self, place: Place) -> float:
-        """The larger of the residual and of the temperature's change over a typical one."""
-        return max(self.residual(place), float(np.abs(place.change).max(initial=0.0)) / TYPICAL_CHANGE)
+        """The larger of the residual and of the temperature's change over `LARGEST_CHANGE`."""
+        return max(self.residual(place), float(np.abs(place.change).max(initial=0.0)) / LARGEST_CHANGE)
 
     def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = ROUNDING) -> bool:
         """Return whether the residual is below a tolerance, and the change of the temperature negligible."""
@@ -256,9 +256,9 @@ class Balance:
         return self.at(motion, temperature)
 
     def _scales(self, size: int) -> np.ndarray:
-        """Units (k + size,) of the unknowns: clearance for positions, typical change of all temperatures, K."""
+        """Units (k + size,) of the unknowns: clearance for positions, `LARGEST_CHANGE` of all temperatures, K."""
         c = self.model.bearing.radial_clearance
-        return np.append(np.full(len(self.free), c), np.full(size, TYPICAL_CHANGE * math.sqrt(max(size, 1))))
+        return np.append(np.full(len(self.free), c), np.full(size, LARGEST_CHANGE * math.sqrt(max(size, 1))))
 
     def _unknowns(self, place: Place) -> np.ndarray:
         """Scaled unknowns (k + m,) at a place."""
