@@ -17,7 +17,7 @@ from exudyn_ehd.coupling.rotor.system import HeldBore, SpinningSystem, TurningNo
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.newton import SHARE
 from exudyn_ehd.joint.audit.resolution import warn_of_grid
-from exudyn_ehd.joint.balance.limits import refuse_pressed_through, warn_of_overload
+from exudyn_ehd.joint.balance.limits import warn_of_overload
 from exudyn_ehd.joint.balance.newton import (
     FREE_STEP,
     ROOM,
@@ -230,8 +230,8 @@ class RotorFilm:
         self.bore.enter(q, evaluation, self.frames[0])
         if evaluation.is_central:
             require_derivatives(evaluation, where)
-        refuse_pressed_through(self.bearing, known["minimum_gap"], where)
-        warn_of_overload(self.bearing, known["peak_pressure"], float(np.hypot(*force)), where)
+        loads = known["minimum_gap"], known["peak_pressure"], float(np.hypot(*force))
+        warn_of_overload(self.bearing, *loads, where)
         self._told = self._told or (evaluation.film is not None and warn_of_grid(evaluation.film, where))
         angle = math.atan2(self.motion[1], self.motion[0]) - math.atan2(-force[1], -force[0])
         rows = np.zeros((2, self.size))

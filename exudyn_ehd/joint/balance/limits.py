@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import cast
 
 import numpy as np
@@ -46,8 +45,16 @@ def mean_pressure(bearing: JournalBearing, force: float) -> float:
     return force / (2.0 * bearing.journal_radius * bearing.length)
 
 
-def warn_of_overload(bearing: JournalBearing, peak: float, force: float, where: str) -> None:
-    """Warn in the name of ``where`` of a film with a peak pressure, Pa, or a force, N, that no material bears."""
+def warn_of_overload(bearing: JournalBearing, gap: float, peak: float, force: float, where: str) -> None:
+    """Warn in the name of ``where`` of a film with a peak pressure, Pa, or a force, N, that no material bears.
+
+    Raise `FilmError` if the gap, m, is below minus the clearance in a rigid bore: no contact explains such a depth.
+    """
+    if getattr(bearing, "yielding", None) is None and gap < -bearing.radial_clearance:
+        raise FilmError(
+            f"{where}: {PRESSED_THROUGH}, minimum film thickness {gap:.3g} m; check load, eccentricity and units, or "
+            "give the contact more stiffness (RegularisedWall.pressure)."
+        )
     mean = mean_pressure(bearing, force)
     # a film model without peak pressure reports nan, for which the comparison is False
     if not peak > HIGHEST_PEAK and not mean > HIGHEST_MEAN:
@@ -73,18 +80,6 @@ def warn_of_starved(bearing: JournalBearing, reservoirs: Reservoirs | None, wher
         "more supply_pressure, or move the area to where the film presses.",
         StarvationWarning,
     )
-
-
-def refuse_pressed_through(bearing: JournalBearing, gap: float, where: str) -> None:
-    """Raise `FilmError` in the name of ``where`` if a gap, m, is below minus the clearance in a rigid bore.
-
-    No contact explains such a depth.
-    """
-    if getattr(bearing, "yielding", None) is None and math.isfinite(gap) and gap < -bearing.radial_clearance:
-        raise FilmError(
-            f"{where}: {PRESSED_THROUGH}, minimum film thickness {gap:.3g} m; check load, eccentricity and units, or "
-            "give the contact more stiffness (RegularisedWall.pressure)."
-        )
 
 
 def is_above(limit: float, temperature: float | np.ndarray) -> bool:

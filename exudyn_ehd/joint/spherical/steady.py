@@ -32,7 +32,6 @@ from exudyn_ehd.joint.audit.switches import ROUGH_STEEL, STEEL, VAPOUR_PRESSURE
 from exudyn_ehd.joint.balance.limits import (
     advice,
     outside_table,
-    refuse_pressed_through,
     require_oil_bears,
     warn_of_heat,
     warn_of_overload,
@@ -355,15 +354,14 @@ def result_of(found: SphericalEvaluation, where: str) -> SphericalResult:
             f"{where}: {found.status.name} at place {motion[PLACE]} m, minimum film thickness "
             f"{found.minimum_gap:.3g} m: {advice(found.status, bearing)}"
         )
-    sizes = cast(JournalBearing, bearing)
-    refuse_pressed_through(sizes, found.minimum_gap, where)
     quantities = found.quantities()
     force, peak = film.wrench[:3], quantities["peak_pressure"]
+    loads = found.minimum_gap, peak, float(np.linalg.norm(force))
+    warn_of_overload(cast(JournalBearing, bearing), *loads, where)
     if message := outside_table(film):
         raise FilmError(f"{where}: {message}")
     require_oil_bears(film.temperature, model.grid, where)
     warn_of_heat(film.temperature, model.grid, where)
-    warn_of_overload(sizes, peak, float(np.linalg.norm(force)), where)
     return SphericalResult(
         phi=model.grid.x,
         chi=model.patch.chi,

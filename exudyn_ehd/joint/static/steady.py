@@ -19,7 +19,6 @@ from exudyn_ehd.joint.audit.resolution import warn_of_grid
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.balance.limits import (
     lacks_oil,
-    refuse_pressed_through,
     warn_of_heat,
     warn_of_overload,
     warn_of_starved,
@@ -459,8 +458,7 @@ def result_at(
     q, wrench = evaluation.quantities(), evaluation.wrench
     peak, angle, _ = results.refined_peak(film)
     force = math.hypot(wrench[0], wrench[1])
-    refuse_pressed_through(model.bearing, q["minimum_gap"], where)
-    warn_of_overload(model.bearing, peak, force, where)
+    warn_of_overload(model.bearing, q["minimum_gap"], peak, force, where)
     warn_of_grid(film, where)
     warn_of_starved(model.bearing, film.solver.reservoirs, where)
     # Python's floats, because quotients of numpy's floats warn of overflow
