@@ -66,9 +66,6 @@ class Effects:
     liner : ElasticLiner or None
     lobes : LobeTerm or None
         Shape of arcs; also one of ``gap_terms``.
-    uneven_drag : bool
-        True if a pressure gradient exerts different shear forces on both surfaces; see
-        `exudyn_ehd.film.surfaces.roughness`.
     """
 
     gap_terms: tuple[GapTerm, ...] = ()
@@ -82,7 +79,6 @@ class Effects:
     wear: Wear | None = None
     liner: ElasticLiner | None = None
     lobes: LobeTerm | None = None
-    uneven_drag: bool = False
 
     @property
     def least_plain_gap(self) -> float | None:
@@ -95,11 +91,6 @@ class Effects:
             return None
         begins = [0.0] if self.limiter is None else [self.limiter.limits_below]
         return max(begins + [contact.presses_below for contact in self.contacts])
-
-
-def _supply_map(bearing: JournalBearing, grid: FilmGrid) -> SupplyMap | None:
-    around = getattr(bearing.film, "circumferential_pressure_flow", True)
-    return SupplyMap(bearing.supply, grid, around) if bearing.supply else None
 
 
 def _reservoirs(bearing: JournalBearing, supply: SupplyMap, effects: Effects) -> Reservoirs:
@@ -131,10 +122,10 @@ def grid_of(bearing: JournalBearing, start_angle: float = 0.0, open_ring: bool =
 def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) -> FilmParts:
     """Parts of the model of a bearing with its effects, on the grid that starts at ``start_angle``, rad."""
     R, c = bearing.journal_radius, bearing.radial_clearance
-    open_ring = isinstance(bearing.inlet, MaximumGap)
-    grid = grid_of(bearing, start_angle, open_ring)
-    supply = _supply_map(bearing, grid)
-    grid = grid if supply is None else supply.grid
+    grid, supply = grid_of(bearing, start_angle, isinstance(bearing.inlet, MaximumGap)), None
+    if bearing.supply:
+        supply = SupplyMap(bearing.supply, grid, getattr(bearing.film, "circumferential_pressure_flow", True))
+        grid = supply.grid
     mixing = [*(mixing_grooves(grid) if bearing.bore_arcs else ()), *(() if supply is None else supply.masks)]
     touching: list[Contact] = list(effects.contacts)
     if supply is not None:
@@ -173,7 +164,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         pose_scale=pose_scale,
         motion_scale=np.concatenate((pose_scale, pose_scale, (0.5, 0.5 / R))),
         flow_scale=c * R**2,
-        uneven_drag=effects.uneven_drag,
+        uneven_drag=any(effect.changes_carriers for effect in effects.flux),
     )
 
 
@@ -214,14 +205,14 @@ def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effect
     wear = None if bearing.wear is None else WearTerm(bearing.wear, grid.shape, c)
     if wear is not None:
         gap_terms.append(wear)
-    limiter, contacts, rough_flux, rough_factors = _touching_surfaces(bearing)
+    limiter, contacts, rough = _touching_surfaces(bearing)
     thermal, growth, flux, factors = _rheology(bearing, grid)
-    flux, factors = rough_flux + flux, factors + rough_factors
+    factors += rough
     return Effects(
         gap_terms=(*gap_terms, *growth),
         limiter=limiter,
         contacts=tuple(contacts),
-        flux=tuple(flux),
+        flux=(*rough, *flux),
         pressure_law=law,
         shear_factor=reduce(ShearProduct, factors) if factors else None,
         thermal=thermal,
@@ -229,31 +220,25 @@ def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effect
         wear=wear,
         liner=bearing.bush if isinstance(bearing.bush, ElasticLiner) else None,
         lobes=lobes,
-        uneven_drag=any(effect.changes_carriers for effect in flux),
     )
 
 
-def _touching_surfaces(
-    bearing: JournalBearing,
-) -> tuple[GapLimiter | None, list[Contact], list[FluxEffect], list[ShearFactor]]:
-    """Limiter, contacts, flux effects and shear factors of roughness, asperities and wall."""
-    c, rough = bearing.radial_clearance, bearing.roughness
+def _touching_surfaces(bearing: JournalBearing) -> tuple[GapLimiter | None, list[Contact], list[RoughFlow]]:
+    """Limiter and contacts of roughness, asperities and wall, and the flow between rough surfaces."""
+    c, rough, residual = bearing.radial_clearance, bearing.roughness, 0.0
     limiter: GapLimiter | None = None
     contacts: list[Contact] = []
-    flux: list[FluxEffect] = []
-    factors: list[ShearFactor] = []
-    residual = 0.0
+    flows: list[RoughFlow] = []
     if bearing.asperity is not None:
         limiter = asperities = AsperityContact(bearing.asperity, c)
         contacts, residual = [asperities], asperities.residual
     if rough is not None:
         limiter = AverageGap(rough.composite_roughness / c, residual) if limiter is None else limiter
-        flow = RoughFlow(rough, c, residual)
-        flux, factors = [flow], [flow]
+        flows = [RoughFlow(rough, c, residual)]
     if bearing.contact is not None:
         limiter = wall = WallContact(bearing.contact, c)
         contacts = [wall, *contacts]
-    return limiter, contacts, flux, factors
+    return limiter, contacts, flows
 
 
 def _rheology(

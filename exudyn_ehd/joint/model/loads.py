@@ -61,12 +61,15 @@ def film_loads(
         couette = float(np.vdot(sheared, (1.0 if oil.ratio is None else oil.ratio) / s.H))
     if recess is not None:
         couette += float(recess.density.sum())
+    if scales.edges is not None:
+        # gap times pressure over the trailing edges of arcs, minus that over their leading edges
+        extra_theta -= float(np.dot(scales.edges, s.H[g.edges.ravel()] @ g.weight_z))
     wrench = np.empty(6)
     s_theta = journal_wrench(
         journal.pose,
         integrals,
         couette,
-        extra_theta - edge_forces(parts, scales),
+        extra_theta,
         extra_z,
         s.H,
         g.width_x,
@@ -100,13 +103,6 @@ def drag_weights(parts: FilmParts, limited: LimiterFields | None) -> np.ndarray:
     if parts.uneven_drag and s.flux is not None:
         carriers = s.flux.cx, s.flux.cz
     return roughness.drag_weights(carriers, gap, link, parts.grid.link_widths)
-
-
-def edge_forces(parts: FilmParts, scales: Scales) -> float:
-    """Integral of gap times pressure over the trailing edges of arcs, minus that over their leading edges."""
-    if scales.edges is None:
-        return 0.0
-    return float(np.dot(scales.edges, parts.solver.H[parts.grid.edges.ravel()] @ parts.grid.weight_z))
 
 
 def recess_of(

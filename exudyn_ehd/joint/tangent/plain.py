@@ -39,7 +39,6 @@ def is_plain(film: SolvedFilm) -> bool:
         and film.pressing is None
         and has_plain_supply(p)
         and has_plain_edges(p.bearing)
-        and not p.uneven_drag
     )
 
 
