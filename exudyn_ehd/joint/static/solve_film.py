@@ -165,13 +165,11 @@ def solve_film(
     boundary, cavity = known if law is None else (law.transform(p) for p in known)
     solver.pressure[:] = np.where(grid.fixed, boundary, 0.0) / scale
     status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), float(cavity) / scale, mass, step)
-    pressure = solver.pressure * scale
-    if law is not None and status is Status.CONVERGED:
-        ratio, slope = np.empty_like(pressure), np.empty_like(pressure)
-        if not law.inverse(pressure.copy(), pressure, ratio, slope):
-            status = Status.NO_PRESSURE
-    if status is not Status.CONVERGED:
+    oil = solver.oil_fields(law, None) if status is Status.CONVERGED else None
+    if oil is None or oil.beyond:
+        status = Status.NO_PRESSURE if status is Status.CONVERGED else status
         raise FilmError(f"solve_film: {status.name}: {status.advice}")
+    pressure = oil.P * scale
     fill = solver.fill.copy() if closure.conserves_mass else np.ones(grid.shape)
     return FilmResult(
         status=status,
