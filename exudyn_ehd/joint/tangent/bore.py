@@ -57,8 +57,9 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
     out[:6, :size] += motion_tangent(film)
     contact: np.ndarray | float = 0.0
     if film.pressing is not None:
-        contact = bore.product(contact_slope(film, film.pressing)) / film.parts.bearing.radial_clearance
-        out[6:, :4] -= _contact_columns(film, bore, film.pressing)
+        slope = contact_slope(film, film.pressing)
+        contact = bore.product(slope) / film.parts.bearing.radial_clearance
+        out[6:, :4] -= bore.load(slope * film.grid.moments[:4]).T * film.parts.pose_scale
     for i, (a, b) in enumerate(combinations):
         part = out[:, size + i * k : size + (i + 1) * k]
         part[:6] += a * by_q + b * by_rate
@@ -208,10 +209,3 @@ def contact_slope(film: SolvedFilm, f: ContactFields) -> np.ndarray:
     """Derivative of the contacts' force at every vertex to the scaled gap (n, m), N."""
     g = film.grid
     return np.sum(f.slope, axis=0) * g.weight * g.reference_length**2
-
-
-def _contact_columns(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarray:
-    """Minus the gradient of the contacts' part of the bore's loads to the pose, (k, 4)."""
-    slope, z, p = contact_slope(film, f), film.grid.z, film.parts
-    cos, sin = (slope * normal[:, None] for normal in film.grid.directions[:2])
-    return bore.load(np.stack([cos, sin, cos * z, sin * z])).T * p.pose_scale
