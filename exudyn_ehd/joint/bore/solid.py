@@ -18,6 +18,7 @@ from numpy.linalg import LinAlgError
 from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import SuperLU
 
+from exudyn_ehd.film.banded.substitution import TILE
 from exudyn_ehd.joint.bore.equilibrium import (
     HALVINGS,
     ROUNDED,
@@ -36,8 +37,6 @@ from exudyn_ehd.status import SMALL, Status
 # Contraction rates of the corrections: above the first the solid is linearised again, above the second for an exact
 # tangent. Smaller: more factors, more accurate tangents.
 SLOWEST, EXACT = 0.3, 1e-3
-# Number of unit loads that are solved for at once. Larger: more memory.
-COLUMNS = 256
 NO_BALANCE = (
     "the solid finds no balance with the film's load, which may lie above a limit point; take NeoHooke(...) for "
     "strains beyond a few per cent, a finer mesh, a thicker wall, or less load."
@@ -243,8 +242,8 @@ class SolidElasticity(Elasticity):
         axial = 3 * self.solid.mesh.bore.nodes + 2
         self._by_axial = np.zeros((axial.size, places.size))
         # in blocks: for a fine mesh all solutions together take gigabytes
-        for first in range(0, places.size, COLUMNS):
-            some = places[first : first + COLUMNS]
+        for first in range(0, places.size, TILE):
+            some = places[first : first + TILE]
             unit = np.zeros((int(free.sum()), some.size))
             unit[some, np.arange(some.size)] = 1.0
             answer = factor.solve(unit)
