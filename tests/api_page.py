@@ -305,7 +305,7 @@ those named after "None:" are None by default, which means: absent, or chosen by
 
 *This page is made of signatures and docstrings by `{COMMAND}`; a test compares.*
 """
-PARTS = "; ".join(f"`{name}` into `{', '.join(parts)}`" for name, parts in COMPONENTS.items())
+PARTS = "; ".join(f"`{name}` into `{', '.join(parts)}`" for name, parts in COMPONENTS.items() if name != "eccentricity")
 # Classes with columns: what stands above their tables.
 TABLES = {
     "JointHistory": f"""## Columns of a joint's history

@@ -202,7 +202,6 @@ def pressure_colours(pressure: np.ndarray) -> np.ndarray:
 
 
 _NO_ROW = np.full(WIDTH, np.nan)
-QUANTITIES = tuple(member.value for member in Quantity)
 
 
 def _turn(h: np.ndarray, j: np.ndarray) -> np.ndarray:

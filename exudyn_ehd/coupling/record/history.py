@@ -29,6 +29,7 @@ FORMAT = "exudyn_ehd JointHistory 7"
 DIMENSIONS = ("radial_clearance", "journal_radius", "length")
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
+    "eccentricity": ("x", "y"),
     "force": ("force_x", "force_y", "force_z"),
     "moment": ("moment_x", "moment_y", "moment_z"),
 }
@@ -88,28 +89,27 @@ class Quantity(enum.Enum):
     WORN_VOLUME = "worn_volume"
 
 
+QUANTITIES = tuple(member.value for member in Quantity)
 # Scalar quantities of the film: those behind motion, eccentricities and loads.
-_SCALARS = tuple(member.value for member in Quantity)[6:]
-# Numbers in a row: columns, the tangent's entries, most of them of a ball, and the load on the film, then those of a
+_SCALARS = QUANTITIES[QUANTITIES.index("minimum_gap") :]
+# Columns that are written as text.
+_NAMES = ("time", *QUANTITIES, "step_error")
+# Numbers in a row: quantities, the tangent's entries, most of them of a ball, and the load on the film, then those of a
 # row that is settled.
-_SIZES = {"time": 1, "motion": 10, "eccentricity": 2, "eccentricity_ratio": 1, "largest_eccentricity_ratio": 1}
-_SIZES |= {"force": 3, "moment": 3, **dict.fromkeys(_SCALARS, 1), "tangent": recorded_entries(BALL)[0].size}
-_SIZES |= {"load": sum(LOAD_COLUMNS), "step_count": 1, "step_error": 1}
+_SIZES = {name: len(_PARTS.get(name, [name])) for name in ("time", *QUANTITIES)}
+_SIZES |= {"tangent": len(recorded_entries(BALL)[0]), "load": sum(LOAD_COLUMNS), "step_count": 1, "step_error": 1}
 _PLACES = {
     name: slice(end - size, end)
     for (name, size), end in zip(_SIZES.items(), itertools.accumulate(_SIZES.values()), strict=True)
 }
 TANGENT, LOAD, FORCE = (_PLACES[name] for name in ("tangent", "load", "force"))
-WIDTH = LOAD.stop
+WIDTH, SETTLED_WIDTH = LOAD.stop, sum(_SIZES.values())
 TIME, MINIMUM_GAP, PEAK_PRESSURE, STEP_COUNT, STEP_ERROR = (
     _PLACES[name].start for name in ("time", "minimum_gap", "peak_pressure", "step_count", "step_error")
 )
 COLUMNS: dict[str, int | slice] = {
-    name: _PLACES[name] if _SIZES[name] > 1 else _PLACES[name].start
-    for name in (*tuple(_SIZES)[:-4], "step_error", "step_count")
+    name: _PLACES[name] if _SIZES[name] > 1 else _PLACES[name].start for name in (*_NAMES, "step_count")
 }
-# Columns that are written as text.
-_NAMES = tuple(COLUMNS)[:-1]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -364,12 +364,8 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         """Columns (n,) by name, vectors by their components."""
         columns: dict[str, np.ndarray] = {}
         for name in _NAMES:
-            values = getattr(self, name)
             # the eccentricity is the motion's x and y
-            if name in _PARTS:
-                columns |= dict(zip(_PARTS[name], values.T, strict=True))
-            elif name != "eccentricity":
-                columns[name] = values
+            columns |= dict(zip(_PARTS.get(name, [name]), np.atleast_2d(getattr(self, name).T), strict=True))
         return columns
 
     def revolutions(self, *, period: float | None = None) -> Revolutions:

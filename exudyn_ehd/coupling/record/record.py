@@ -21,6 +21,7 @@ from exudyn_ehd.coupling.record.history import (
     DIMENSIONS,
     FORMAT,
     MINIMUM_GAP,
+    SETTLED_WIDTH,
     STEP_COUNT,
     TIME,
     WIDTH,
@@ -136,19 +137,19 @@ class Record:
         return np.array(self._rows if final is None else [*self._rows, final]).reshape(-1, WIDTH)
 
     def rows(self, final: np.ndarray | None) -> np.ndarray:
-        """Copy of all rows (n, WIDTH + 2), followed by ``final`` if it is given and later."""
+        """Copy of all rows (n, SETTLED_WIDTH), followed by ``final`` if it is given and later."""
         final = None if final is None or not final[TIME] > self.last_time else final
         earlier = [] if self._disk is None else [self._disk.mapped()]
         return np.concatenate([*earlier, *self._kept, self._thinner.look(self._pending(final))])
 
     def restore(self, rows: np.ndarray) -> None:
-        """Begin a record with given rows (n, WIDTH + 2), which for a record of all steps must be complete.
+        """Begin a record with given rows (n, SETTLED_WIDTH), which for a record of all steps must be complete.
 
         After the rows of a thinned record, the estimate of errors starts again.
         """
-        if rows.ndim != 2 or rows.shape[1] != WIDTH + 2 or (not self.is_thinned and has_gaps(rows[:, STEP_COUNT])):
+        if rows.ndim != 2 or rows.shape[1] != SETTLED_WIDTH or (not self.is_thinned and has_gaps(rows[:, STEP_COUNT])):
             raise InputError(
-                f"LubricatedJoint.restore_state: rows must be (n, {WIDTH + 2}), got {rows.shape}, and those of a "
+                f"LubricatedJoint.restore_state: rows must be (n, {SETTLED_WIDTH}), got {rows.shape}, and those of a "
                 "thinned record need a thinned one; create the joint with the record of the stored run."
             )
         self.clear()

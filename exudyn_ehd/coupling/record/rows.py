@@ -35,6 +35,7 @@ from exudyn_ehd.coupling.record.history import (
     LOAD,
     MINIMUM_GAP,
     PEAK_PRESSURE,
+    SETTLED_WIDTH,
     STEP_COUNT,
     STEP_ERROR,
     TANGENT,
@@ -116,17 +117,17 @@ class Thinner:
         self.begin_anew()
 
     def begin_anew(self, last: np.ndarray | None = None) -> None:
-        """Forget all rows; ``last`` (WIDTH + 2,): row that comes again as the next one."""
+        """Forget all rows; ``last`` (SETTLED_WIDTH,): row that comes again as the next one."""
         self.count = 0 if last is None else int(last[STEP_COUNT])
         self._known_error = np.nan if last is None else float(last[STEP_ERROR])
         # rows kept so far of the present span; the last rows, and the error of the pose there
-        self._open, self._lead = np.empty((0, WIDTH + 2)), np.empty((0, WIDTH))
+        self._open, self._lead = np.empty((0, SETTLED_WIDTH)), np.empty((0, WIDTH))
         self._error: Sequence[np.ndarray] = no_error(BALL if isinstance(self._bearing, SphericalBearing) else JOURNAL)
 
     def take(self, rows: np.ndarray) -> np.ndarray:
-        """Add rows (n, WIDTH); return the rows (k, WIDTH + 2) to be kept of finished spans."""
+        """Add rows (n, WIDTH); return the rows (k, SETTLED_WIDTH) to be kept of finished spans."""
         if not len(rows):
-            return np.empty((0, WIDTH + 2))
+            return np.empty((0, SETTLED_WIDTH))
         whole, numbered, error = self._number(rows)
         kept, begin = self._keep(numbered)
         self._open, self._error, self._known_error = kept[begin:], error, np.nan
@@ -134,7 +135,7 @@ class Thinner:
         return kept[:begin]
 
     def look(self, rows: np.ndarray) -> np.ndarray:
-        """Return the rows (k, WIDTH + 2) of the present span and later ones that adding rows (n, WIDTH) would give."""
+        """Return the rows (k, SETTLED_WIDTH) of the present span and later ones, as if rows (n, WIDTH) were added."""
         return self._keep(self._number(rows)[1])[0] if len(rows) else self._open
 
     def _number(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, Sequence[np.ndarray]]:
@@ -152,7 +153,7 @@ class Thinner:
         return whole, np.concatenate([self._open, np.column_stack([rows, count, errors])]), error
 
     def _keep(self, rows: np.ndarray) -> tuple[np.ndarray, int]:
-        """Return the rows (n, WIDTH + 2) that are kept, and the index among them at which the last span begins."""
+        """Return the rows (n, SETTLED_WIDTH) that are kept, and the index among them at which the last span begins."""
         if self.rule is None:
             return rows, len(rows)
         spans = self.rule.spans(rows[:, STEP_COUNT], rows[:, TIME])
@@ -191,8 +192,8 @@ def errors_of(
 
 HEAD = 512
 FORMAT = "exudyn_ehd rows 6"
-# Bytes of a row.
-BYTES = 8 * (WIDTH + 2)
+# A settled row in a file.
+ROW = np.dtype((float, SETTLED_WIDTH))
 NAME = "{name}"
 
 
@@ -270,7 +271,7 @@ class RowsOnDisk(NamedTuple):
         return new
 
     def add(self, rows: np.ndarray, number: int) -> RowsOnDisk:
-        """Append rows (n, WIDTH + 2); the next call may replace those after the first ``number``.
+        """Append rows (n, SETTLED_WIDTH); the next call may replace those after the first ``number``.
 
         Raises
         ------
@@ -279,13 +280,13 @@ class RowsOnDisk(NamedTuple):
         """
         with open(self.path, "r+b") as file:
             self._require_head(file)
-            file.seek(HEAD + BYTES * self.settled)
+            file.seek(HEAD + ROW.itemsize * self.settled)
             file.write(np.ascontiguousarray(rows).tobytes())
             file.truncate()
         return self._replace(settled=self.settled + number)
 
     def mapped(self) -> np.ndarray:
-        """Memory map of the rows (n, WIDTH + 2) of the file.
+        """Memory map of the rows (n, SETTLED_WIDTH) of the file.
 
         Raises
         ------
@@ -293,10 +294,10 @@ class RowsOnDisk(NamedTuple):
             If the file is another one by now.
         """
         if not self.settled:
-            return np.empty((0, WIDTH + 2))
+            return np.empty((0, SETTLED_WIDTH))
         with open(self.path, "rb") as file:
             self._require_head(file)
-        return np.memmap(self.path, dtype=float, mode="r", offset=HEAD, shape=(self.settled, WIDTH + 2))
+        return np.memmap(self.path, dtype=float, mode="r", offset=HEAD, shape=(self.settled, SETTLED_WIDTH))
 
     def _require_head(self, file: BinaryIO) -> None:
         if file.read(HEAD) != self.head:
@@ -331,7 +332,7 @@ def open_rows(path: str | pathlib.Path) -> RowsOnDisk:
     path = pathlib.Path(path).absolute()
     with open(path, "rb") as file:
         head = file.read(HEAD)
-    return RowsOnDisk(path, path.name, head, (os.path.getsize(path) - HEAD) // BYTES)
+    return RowsOnDisk(path, path.name, head, (os.path.getsize(path) - HEAD) // ROW.itemsize)
 
 
 def between(rows: np.ndarray, start: float, end: float) -> np.ndarray:

@@ -11,10 +11,10 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index, require_system
 from exudyn_ehd.coupling.element.nodal import ModalFilmElement
-from exudyn_ehd.coupling.element.outputs import QUANTITIES, add_sensor, reader
+from exudyn_ehd.coupling.element.outputs import add_sensor, reader
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.exudyn_solvers import require_end
-from exudyn_ehd.coupling.record.history import JointHistory, Quantity
+from exudyn_ehd.coupling.record.history import QUANTITIES, JointHistory, Quantity
 from exudyn_ehd.joint.balance.limits import HIGHEST_PEAK
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
