@@ -9,6 +9,7 @@ from typing import Any, Protocol, SupportsInt, TypeAlias
 
 import exudyn as exu
 import numpy as np
+from exudyn.rigidBodyUtilities import Skew
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.model.rigid import Evaluation
@@ -156,11 +157,20 @@ class Side:
     frame : ndarray (3, 6)
     jac : ndarray (4, 3, n)
         Work arrays of `exudyn_ehd.coupling.kinematics.rigid_nodes`.
+    arm : ndarray (3,)
+        Last arm of `move_point`.
     """
 
     def __init__(self, nodes: list[Index], size: int) -> None:
         self.nodes, self.size = nodes, size
-        self.frame, self.jac = np.zeros((3, 6)), np.zeros((4, 3, size))
+        self.frame, self.jac, self.arm = np.zeros((3, 6)), np.zeros((4, 3, size)), np.zeros(3)
+
+    def move_point(self, arm: np.ndarray) -> None:
+        """Move the point of the frame and of Jp by an arm (3,) that turns with the frame, global [m]."""
+        self.arm, lever = arm, Skew(arm)
+        self.frame[:, 3] += arm
+        self.frame[:, 4] -= lever @ self.frame[:, 5]
+        self.jac[0] -= lever @ self.jac[1]
 
     def update(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType) -> None:
         """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""

@@ -34,8 +34,8 @@ from exudyn_ehd.coupling.exudyn_solvers import StepControl
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import body_item
 from exudyn_ehd.coupling.items.joint_frame import add_body_on, hold, hold_at_pivot, in_the_name_of, place_joint
-from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
-from exudyn_ehd.coupling.kinematics.rigid_nodes import POINTS
+from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.kinematics.rigid_nodes import POINT
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.run.restart import equilibrium_task, shift_journal
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
@@ -322,7 +322,7 @@ def CreateTiltingPadBearing(
     housing, journal, points, rotation = place_joint(
         _WHERE, mbs, itemNumbers, position, axis, rotationMatrixAxes, useGlobalFrame
     )
-    if housing.kind is None or housing.kind in rigid_nodes.POINTS:
+    if housing.kind is None or (housing.nodes and housing.kind == POINT):
         raise InputError(f"{_WHERE}.itemNumbers[0] must be a rigid body, a rigid node or marker, or ground.")
     pads, objects, inertia = [], [], RigidBodyInertia(bearing.pad_mass, bearing.pad_inertia * np.eye(3))
     rigid, spring = bearing.pivot_stiffness is None, ([1.0, 0.0, 0.0], bearing.pivot_stiffness, 0.0)
@@ -502,7 +502,7 @@ def CreateTiltingPadThrustBearing(
     housing, shaft, points, rotation = place_joint(
         where, mbs, itemNumbers, position, axis, rotationMatrixAxes, useGlobalFrame, ("housing", "shaft")
     )
-    if housing.kind is None or housing.kind in POINTS or housing.planar or shaft.planar:
+    if housing.kind is None or (housing.nodes and housing.kind == POINT) or housing.planar or shaft.planar:
         raise InputError(
             f"{where}.itemNumbers: pivots need a 3D rigid body, its node or ground as housing, and the collar a shaft "
             "that moves along its axis; not planar bodies, and as housing no mass point, link of a kinematic tree or "

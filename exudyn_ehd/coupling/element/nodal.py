@@ -24,13 +24,13 @@ from collections.abc import Callable
 
 import exudyn as exu
 import numpy as np
+from exudyn.rigidBodyUtilities import Skew
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.coupling import exudyn_solvers
 from exudyn_ehd.coupling.contract import CURRENT, Index, JointEvaluation, Side, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.bush import FlexibleBush
-from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.build import TurningEvaluation, TurningModel
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
@@ -297,7 +297,7 @@ class NodalJacobian:
         self.spread, self.resultant = spread_matrix(x), resultant(x)
         place, drift = element._housing_maps()
         # in the rotating frame, the rate depends on the displacement u by -omega x u
-        along, turning = self.frame[:, :2].T, self.frame[:, :2].T @ -relative.skew(omega)
+        along, turning = self.frame[:, :2].T, self.frame[:, :2].T @ -Skew(omega)
         self.place = element.bore_map(f_q * place, f_q * along)
         self.rate = element.bore_map(f_q * drift + f_qt * place, f_q * turning + f_qt * along)
         self.turned = f_q * element._turning_forces(elastic(trial))

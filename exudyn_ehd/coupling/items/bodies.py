@@ -18,7 +18,7 @@ from exudyn_ehd.coupling.kinematics.flexible_bodies import BeamSide
 from exudyn_ehd.coupling.kinematics.sides import NODE_KINDS, NodeSide, node_side
 from exudyn_ehd.status import InputError
 
-POINT_KINDS = {"Point": rigid_nodes.POINT, "Point2D": rigid_nodes.PLANAR_POINT, "PointGround": rigid_nodes.GROUND}
+POINT_KINDS = dict.fromkeys(("Point", "Point2D", "PointGround"), rigid_nodes.POINT)
 MASS_POINTS = ("MassPoint", "MassPoint2D")
 _MESH_HINT = "give MarkerSuperElementRigid on nodes of its mesh"
 
@@ -35,7 +35,7 @@ class Item:
     is_marker : bool
         True if it sets the joint point.
     kind : int or None
-        Kind of rotation coordinates of its node; None unless it is a rigid body, a rigid node or ground.
+        Kind of rotation coordinates of its node; None unless it is a rigid body, a rigid node, a point or ground.
     planar : bool
         True if it moves in the global x-y plane only.
     inner : bool
@@ -73,8 +73,8 @@ def ground_item(position: np.ndarray, rotation: np.ndarray) -> Item:
         position=position,
         rotation=rotation,
         is_marker=False,
-        kind=rigid_nodes.GROUND,
-        side=lambda point, joint: NodeSide(rigid_nodes.GROUND, None, np.zeros(0), point, joint),
+        kind=rigid_nodes.POINT,
+        side=lambda point, joint: NodeSide(rigid_nodes.POINT, None, np.zeros(0), point, joint),
     )
 
 
@@ -92,11 +92,11 @@ def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
             "of a rigid body, a beam or a cable, a mass point, or a rigid marker on the flexible body."
         )
     reference = np.array(data["referenceCoordinates"], dtype=float)
-    if kind == rigid_nodes.GROUND:
+    if data["nodeType"] == "PointGround":
         return ground_item(reference, np.eye(3))
     if data["nodeType"] in POINT_KINDS:
         _require_point(mbs, where, node)
-    nt = rigid_nodes.translations(kind)
+    nt = rigid_nodes.translations(kind, reference.size)
     position = np.zeros(3)
     position[:nt] = reference[:nt]
     rotation = rigid_nodes.rotation_of(kind, reference)

@@ -23,13 +23,13 @@ from functools import cached_property
 
 import exudyn as exu
 import numpy as np
+from exudyn.rigidBodyUtilities import Skew
 from scipy.sparse import bmat, csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.coupling.contract import CURRENT, START_OF_STEP, Side
 from exudyn_ehd.coupling.items.objects import warn_if_indefinite
 from exudyn_ehd.coupling.items.reduced_bodies import Carrier, positions, velocities
-from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.solid.loads import BushLoad, FollowerPressure, dead_forces, factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import RunError
@@ -74,7 +74,7 @@ class RigidPart:
 
     def _frame_mass(self, frame: np.ndarray) -> np.ndarray:
         A = frame[:, :3]
-        s, second = skew(A @ self.first), A @ self.second @ A.T
+        s, second = Skew(A @ self.first), A @ self.second @ A.T
         return np.block([[self.mass * np.eye(3), -s], [s, np.trace(second) * np.eye(3) - second]])
 
 

@@ -29,7 +29,7 @@ from exudyn_ehd.coupling.items.markers import resolve
 from exudyn_ehd.coupling.items.reduced_bodies import initial_frame
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.relative import BoreGap, eccentricity_ratios
-from exudyn_ehd.coupling.kinematics.rigid_nodes import GROUND, PLACE, POINTS, SPIN, VELOCITY
+from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE, POINT, SPIN, VELOCITY
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.solid.mesh import frame_of
 from exudyn_ehd.status import InputError, require_vector
@@ -183,8 +183,8 @@ def hold(
     Returns None if neither is to be held.
     """
     # planar bodies cannot move axially or tilt, points cannot turn: a constraint would be empty and singular
-    moves = not all(item.planar or item.kind == GROUND for item in items)
-    axial, tilt = axial and moves, tilt and moves and not all(item.kind in (GROUND, *POINTS) for item in items)
+    moves = not all(item.planar or not item.nodes for item in items)
+    axial, tilt = axial and moves, tilt and moves and not all(item.kind == POINT for item in items)
     if not (axial or tilt):
         return None
     housing, journal = items
@@ -206,7 +206,7 @@ def hold(
             markers.append(item.marker)
             turns.append(item.rotation.T @ rotation)
             continue
-        if axial and item.kind in POINTS:
+        if axial and item.nodes and item.kind == POINT:
             raise InputError(
                 f"{_WHERE}: axial=Held() can't hold a mass point, which is the {label}; use axial=Free(), and "
                 "constrain the point's own coordinates."
@@ -240,8 +240,8 @@ def rigid_marker(
     transform = np.eye(4)
     transform[:3, :3] = item.node_rotation.T @ rotation
     transform[:3, 3] = item.node_rotation.T @ (point - item.node_position)
-    if not item.nodes or item.kind in POINTS:
-        # on a new ground object at the origin, also for a point, which does not turn either
+    if item.kind == POINT:
+        # on a new ground object at the origin, also for a moving point, which does not turn either
         body = mbs.AddObject(eii.ObjectGround(name=name, visualization=eii.VObjectGround(show=False)))
     else:
         body = body_of_node(mbs, item.nodes[0])

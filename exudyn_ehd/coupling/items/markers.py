@@ -21,6 +21,7 @@ from collections.abc import Callable
 
 import exudyn as exu
 import numpy as np
+from exudyn.rigidBodyUtilities import Skew
 
 from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, MarkerIndex, NodeIndex, ObjectIndex, Side
 from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES, element_nodes
@@ -33,7 +34,7 @@ from exudyn_ehd.coupling.items.bodies import (
     cable_item,
     node_item,
 )
-from exudyn_ehd.coupling.kinematics.relative import skew, skews
+from exudyn_ehd.coupling.kinematics.relative import skews
 from exudyn_ehd.coupling.kinematics.rigid_nodes import add_lever
 from exudyn_ehd.coupling.kinematics.sides import NODE_KINDS, FloatingSide, MarkerSide, TreeSide, node_side
 from exudyn_ehd.status import SMALL, InputError
@@ -107,14 +108,12 @@ class FittedSide(Side):
         self.turned = self.spokes @ R.T
         self.products = np.einsum("k,ki,kj->ij", w, self.turned, x - self.mean)
         self.inverse = np.linalg.inv(np.trace(self.products) * np.eye(3) - self.products)
-        self.arm = R @ self.offset
         self.levers = w[:, None, None] * skews(self.turned.T)
-        turn = self.inverse @ self._columns(self.levers)
-        self.jac[0] = self._columns(w[:, None, None] * np.eye(3)) - skew(self.arm) @ turn
-        self.jac[1] = turn
-        omega = turn @ q_t
-        self.frame[:, :3], self.frame[:, 3] = R @ self.rotation, self.mean + self.arm
-        self.frame[:, 4], self.frame[:, 5] = w @ v + np.cross(omega, self.arm), omega
+        self.jac[0] = self._columns(w[:, None, None] * np.eye(3))
+        self.jac[1] = self.inverse @ self._columns(self.levers)
+        self.frame[:, :3], self.frame[:, 3] = R @ self.rotation, self.mean
+        self.frame[:, 4], self.frame[:, 5] = w @ v, self.jac[1] @ q_t
+        self.move_point(R @ self.offset)
 
     def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
         """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state.
@@ -126,10 +125,10 @@ class FittedSide(Side):
             both = np.multiply.outer(self.turned, torque)
             # minus the change of D torque with the points at fixed R: sum w (r (torque . dx) - torque (r . dx))
             by_points = self._columns(w * (both - both.transpose(0, 2, 1)))
-            change = self.inverse @ (by_points - skew(self.products @ torque) @ turn)
+            change = self.inverse @ (by_points - Skew(self.products @ torque) @ turn)
             # d(t x r) = dt x r + t x (dphi x r); a skew matrix is minus its transpose
             out[3 + i] = self._columns(self.levers).T @ change
-            out[3 + i] -= self._columns(w * (skews(self.turned.T) @ skew(torque))).T @ turn
+            out[3 + i] -= self._columns(w * (skews(self.turned.T) @ Skew(torque))).T @ turn
         add_lever(turn, self.arm, out)
         return out
 

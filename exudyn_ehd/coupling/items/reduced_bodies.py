@@ -31,7 +31,6 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import CURRENT, INITIAL, REFERENCE, Index, Side
 from exudyn_ehd.coupling.items.beams import node_coordinates
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide, bind, floating_change, node_side
 from exudyn_ehd.solid.fe_bore import FEBore, FESurface, ReducedBore, bore_faces, find_bore
 from exudyn_ehd.solid.turning_journal import FEJournal, TurningJournal
@@ -179,18 +178,14 @@ class FloatingBoreSide(Side):
             self.frame[:] = np.nan
             return
         floating.update(mbs, q[:n], q_t[:n], configuration)
-        A, omega = floating.frame[:, :3], floating.frame[:, 5]
-        turn = self.turn @ q[n:]
-        self.jac[:2, :, :n] = floating.jac[:2]
+        A, turn = floating.frame[:, :3], self.turn @ q[n:]
+        self.frame[:, 3:], self.jac[:2, :, :n] = floating.frame[:, 3:], floating.jac[:2]
+        self.jac[1, :, n:] = 0.0
+        self.move_point(A @ (self.origin + self.shift @ q[n:]))
         self.jac[0, :, n:] = A @ self.shift
         self.jac[1, :, n:] = A @ (TExpSO3(-turn) @ self.turn)
-        self.arm = A @ (self.origin + self.shift @ q[n:])
-        S = skew(self.arm)
-        self.jac[0, :, :n] -= S @ floating.jac[1]
         self.frame[:, :3] = A @ ExpSO3(turn) @ self.rotation
-        self.frame[:, 3] = floating.frame[:, 3] + self.arm
-        self.frame[:, 4] = floating.frame[:, 4] - S @ omega + self.jac[0, :, n:] @ q_t[n:]
-        self.frame[:, 5] = omega + self.jac[1, :, n:] @ q_t[n:]
+        self.frame[:, 4:] += (self.jac[:2, :, n:] @ q_t[n:]).T
 
     def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
         """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""

@@ -39,10 +39,10 @@ from typing import NamedTuple
 import exudyn as exu
 import numpy as np
 import scipy
+from exudyn.rigidBodyUtilities import Skew
 from numba import njit
 
 from exudyn_ehd.coupling.contract import Index, Side
-from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.rigid_nodes import TAIT_BRYAN, add_lever, column, combined, cross, dot
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
@@ -152,16 +152,16 @@ class BeamSide(Side):
         rest = np.zeros(self.size)
         self._update_ends(rest, rest)
         section = self.section()
-        self.rho = section.T @ (point - self._mean(3))
+        self.rho = section.T @ (point - self._mean()[:, 0])
         self.rotation = section.T @ rotation
-        self.arm = section @ self.rho
 
     def _update_ends(self, q: np.ndarray, q_t: np.ndarray) -> None:
         for end, _, place in self.parts:
             end.update(None, q[place], q_t[place], None)
 
-    def _mean(self, column: int) -> np.ndarray:
-        return self.weights[0] * self.ends[0].frame[:, column] + self.weights[1] * self.ends[1].frame[:, column]
+    def _mean(self) -> np.ndarray:
+        """Mean position, velocity and angular velocity (3, 3) of the ends, side by side."""
+        return self.weights[0] * self.ends[0].frame[:, 3:] + self.weights[1] * self.ends[1].frame[:, 3:]
 
     def section(self) -> np.ndarray:
         """Rotation (3, 3) of the cross section in the state of the last update."""
@@ -178,14 +178,10 @@ class BeamSide(Side):
             return
         self._update_ends(q, q_t)
         section = self.section()
-        self.arm = section @ self.rho
-        self.frame[:, :3] = section @ self.rotation
-        self.frame[:, 5] = self._mean(5)
-        self.frame[:, 3] = self._mean(3) + self.arm
-        self.frame[:, 4] = self._mean(4) + np.cross(self.frame[:, 5], self.arm)
+        self.frame[:, :3], self.frame[:, 3:] = section @ self.rotation, self._mean()
         for end, weight, place in self.parts:
             self.jac[:2, :, place] = weight * end.jac[:2]
-        self.jac[0] += np.cross(self.jac[1].T, self.arm).T
+        self.move_point(section @ self.rho)
 
     def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
         """Derivatives (6, n, n) of Jp and Jr to the coordinates; `update` must have run at the same state."""
@@ -319,16 +315,16 @@ class FloatingBody:
         self.frame.update(None, q[: self.rigid], q_t[: self.rigid], None)
         self._move(q)
         z_t, w = q_t[self.rigid :], self.G @ q_t[: self.rigid]
-        self.w, self.W, self.alpha = w, skew(w), np.zeros(3)
+        self.w, self.W, self.alpha = w, Skew(w), np.zeros(3)
         if self.bryan:
             (h1, h2, h3), (a, b, c) = self.G[:, 3:6].T, q_t[3:6]
-            self.pairs = h12, h13, h23 = skew(h1) @ h2, skew(h1) @ h3, skew(h2) @ h3
+            self.pairs = h12, h13, h23 = Skew(h1) @ h2, Skew(h1) @ h3, Skew(h2) @ h3
             # sum over i < j of theta_t,i theta_t,j h_i x h_j
             self.alpha = a * b * h12 + a * c * h13 + b * c * h23
         self.flow, self.growth = self.of.S @ z_t, (z_t @ self.R.reshape(-1, 9)).reshape(3, 3).T
         self.bent = (z_t @ self._C).reshape(-1, 3)
         self.turning = self.W @ self.s + 2.0 * self.flow
-        self.f = self.W @ self.turning - skew(self.s) @ self.alpha
+        self.f = self.W @ self.turning - Skew(self.s) @ self.alpha
         self.m = self.J @ self.alpha + self.W @ (self.J @ w) + 2.0 * self.growth @ w
 
     def mass(self, q: np.ndarray) -> np.ndarray:
@@ -338,7 +334,7 @@ class FloatingBody:
         out, n, G = np.zeros((self.size, self.size)), self.rigid, self.G
         out[:n, :n], out[:n, n:], out[n:, n:] = G.T @ self.J @ G, -G.T @ self.turned, self.of.modal_mass
         out[:3, :3] = self.of.mass * np.eye(3)
-        out[:3, 3:n], out[:3, n:] = -self.A @ skew(self.s) @ G[:, 3:], self.A @ self.of.S
+        out[:3, 3:n], out[:3, n:] = -self.A @ Skew(self.s) @ G[:, 3:], self.A @ self.of.S
         out[3:n, :3], out[n:, :n] = out[:3, 3:n].T, out[:n, n:].T
         return out
 
@@ -358,8 +354,8 @@ class FloatingBody:
         dw = f_q * (self.A.T @ (q_t[:n] @ change) + W @ G) + f_qt * G
         da, growing = self._alpha_changes(q_t, f_q, f_qt), self.R + self.R.transpose(0, 2, 1)
         # derivatives by the rotation of the frame, in whose components f and m are given
-        df = f_q * skew(-self.f) @ G - skew(self.s) @ da - (skew(self.turning) + W @ skew(self.s)) @ dw
-        dm = f_q * skew(-self.m) @ G + self.J @ da + (2.0 * self.growth - skew(self.J @ w) + W @ self.J) @ dw
+        df = f_q * Skew(-self.f) @ G - Skew(self.s) @ da - (Skew(self.turning) + W @ Skew(self.s)) @ dw
+        dm = f_q * Skew(-self.m) @ G + self.J @ da + (2.0 * self.growth - Skew(self.J @ w) + W @ self.J) @ dw
         out[:n, :n] = G.T @ dm + f_q * (self.A @ self.m @ change.reshape(3, -1)).reshape(n, n)
         out[:3, :n] = self.A @ df
         out[n:, :n] = -(growing @ w + 2.0 * self.bent) @ dw - self.turned.T @ da
@@ -368,7 +364,7 @@ class FloatingBody:
         grown = 2.0 * f_q * (q_t[n:] @ Pw) + 2.0 * f_qt * (w @ self.R)
         dm = f_q * (growing @ self.alpha + growing @ w @ W.T) + grown
         out[:n, n:] = G.T @ dm.T
-        out[:3, n:] = self.A @ (skew(axis) + f_q * W @ W) @ of.S
+        out[:3, n:] = self.A @ (Skew(axis) + f_q * W @ W) @ of.S
         out[n:, n:] = (
             f_q * (of.stiffness - (Pw.reshape(-1, 3) @ w).reshape(self.count, -1))
             + f_qt * of.damping
@@ -381,8 +377,8 @@ class FloatingBody:
         out = np.zeros((3, self.rigid))
         if self.bryan:
             (h1, h2, h3), (h12, h13, h23), (a, b, c) = self.G[:, 3:6].T, self.pairs, q_t[3:6]
-            carried, third = a * (b * h2 + c * h3), a * b * skew(h1) @ h23 + b * c * skew(h23) @ h3
+            carried, third = a * (b * h2 + c * h3), a * b * Skew(h1) @ h23 + b * c * Skew(h23) @ h3
             out[:, 3] = f_qt * (b * h12 + c * h13)
-            out[:, 4] = f_qt * (a * h12 + c * h23) + f_q * skew(h12) @ carried
-            out[:, 5] = f_qt * (a * h13 + b * h23) + f_q * (skew(h13) @ carried + third)
+            out[:, 4] = f_qt * (a * h12 + c * h23) + f_q * Skew(h12) @ carried
+            out[:, 5] = f_qt * (a * h13 + b * h23) + f_q * (Skew(h13) @ carried + third)
         return out

@@ -34,23 +34,17 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from exudyn.rigidBodyUtilities import Skew
 from numba import njit
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.kinematics.rigid_nodes import AXIS, PLACE, SPIN, VELOCITY, column, cross, dot, in_frame, times
 
-# Cross products: component [i, j, k] of e_i . (e_k x e_j).
-_CROSS = np.cross(np.eye(3)[:, None], np.eye(3)).transpose(2, 1, 0).copy()
-
-
-def skew(v: np.ndarray) -> np.ndarray:
-    """Matrix (3, 3) of the cross product with v (3,)."""
-    return np.asarray(_CROSS @ v)
-
 
 def skews(vectors: np.ndarray) -> np.ndarray:
     """Matrices (n, 3, 3) of the cross products with the columns of ``vectors`` (3, n)."""
-    return np.moveaxis(_CROSS @ vectors, -1, 0)
+    (x, y, z), zero = vectors, np.zeros(vectors.shape[1])
+    return np.moveaxis(np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]), -1, 0)
 
 
 @njit(cache=True)
@@ -231,7 +225,7 @@ def ball_motion(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:
     """Motion (11,) of a ball for frames (3, 6): place, 0, velocity, 0, angular velocity."""
     out = np.zeros(11)
     d = frame_j - frame_h
-    turn = skew(frame_h[:, SPIN]) @ d[:, PLACE]
+    turn = Skew(frame_h[:, SPIN]) @ d[:, PLACE]
     out[:3], out[4:7], out[8:] = (d[:, PLACE], d[:, VELOCITY] - turn, d[:, SPIN]) @ frame_h[:, :3]
     return out
 
@@ -240,14 +234,14 @@ def ball_variation(
     frame_h: np.ndarray, frame_j: np.ndarray, jac_h: np.ndarray, jac_j: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Derivatives (11, n) of a ball's motion to q and q_t, columns in the order socket, ball."""
-    d, spin, n_h = frame_j - frame_h, skew(frame_h[:, SPIN]), jac_h.shape[2]
-    arm, moving = skew(d[:, PLACE]), skew(d[:, VELOCITY] - spin @ d[:, PLACE])
+    d, spin, n_h = frame_j - frame_h, Skew(frame_h[:, SPIN]), jac_h.shape[2]
+    arm, moving = Skew(d[:, PLACE]), Skew(d[:, VELOCITY] - spin @ d[:, PLACE])
     by_q, by_rate = np.zeros((2, 11, n_h + jac_j.shape[2]))
     for sign, (jp, jr, vq, wq), own in ((-1.0, jac_h, slice(n_h)), (1.0, jac_j, slice(n_h, None))):
         place, rate, spun, turn = jp, vq - spin @ jp, wq, sign * frame_h[:, :3].T
         if sign < 0.0:
             place, rate = jp - arm @ jr, rate - arm @ wq - moving @ jr
-            spun = wq - skew(d[:, SPIN]) @ jr
+            spun = wq - Skew(d[:, SPIN]) @ jr
         by_q[:3, own], by_q[4:7, own], by_q[8:, own] = turn @ place, turn @ rate, turn @ spun
         by_rate[4:7, own], by_rate[8:, own] = turn @ place, turn @ jr
     return by_q, by_rate

@@ -27,20 +27,19 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-GROUND, EULER_PARAMETERS, TAIT_BRYAN, ROTATION_VECTOR, PLANAR, POINT, PLANAR_POINT = range(7)
-"""Kinds of rotation coordinates of a node; GROUND has no coordinates, points move without turning."""
-POINTS = (POINT, PLANAR_POINT)
+POINT, EULER_PARAMETERS, TAIT_BRYAN, ROTATION_VECTOR, PLANAR = range(5)
+"""Kinds of rotation coordinates of a node; points move without turning, and ground is a point without coordinates."""
 
 # Columns of a frame; numpy's integers, since numba compiles kernels anew for each plain one.
 AXIS, PLACE, VELOCITY, SPIN = (np.int64(k) for k in (2, 3, 4, 5))
 
 
 @njit(cache=True)
-def translations(kind):
-    """Number of coordinates of the position, which are the first of a node that moves."""
-    if kind == PLANAR:
-        return 2
-    return 2 if kind == PLANAR_POINT else 3
+def translations(kind, n):
+    """Number of coordinates of the position, which are the first of a node's n coordinates."""
+    if kind == POINT:
+        return n
+    return 2 if kind == PLANAR else 3
 
 
 @njit(cache=True)
@@ -153,9 +152,8 @@ def turn(kind, q, reference, a_out, jr_out, theta_out):
     int
         m.
     """
-    nt = translations(kind)
-    # points come last
-    m = 0 if kind >= POINT else q.size - nt
+    nt = translations(kind, q.size)
+    m = q.size - nt
     for k in range(4):
         theta_out[k] = q[nt + k] + reference[nt + k] if k < m else 0.0
     for i in range(3):
@@ -217,7 +215,7 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
     Parameters
     ----------
     kind : int
-        One of the constants above, not GROUND.
+        One of the constants above.
     q, q_t, reference : ndarray (n,)
         Coordinates without reference values, rates, reference values.
     rho : ndarray (3,)
@@ -229,7 +227,7 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
     jac_out : ndarray (4, 3, n)
         Entries 0 and 1 are written.
     """
-    nt = translations(kind)
+    nt = translations(kind, q.size)
     a, jr, theta = np.empty((3, 3)), np.empty((3, 4)), np.empty(4)
     m = turn(kind, q, reference, a, jr, theta)
     s = times(a, (rho[0], rho[1], rho[2]))
@@ -258,7 +256,7 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
 @njit(cache=True)
 def node_change(kind, q, reference, rho, change_out):
     """Fill ``change_out`` (6, n, n): derivatives d J[i, a] / dq_b of J = [Jp, Jr]; arguments as in `node_frame`."""
-    nt = translations(kind)
+    nt = translations(kind, q.size)
     a, jr, theta, w = np.empty((3, 3)), np.zeros((3, 4)), np.empty(4), np.empty((3, 4, 4))
     m = turn(kind, q, reference, a, jr, theta)
     _turn_change(kind, theta, jr, w)

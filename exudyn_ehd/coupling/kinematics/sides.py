@@ -31,7 +31,7 @@ class NodeSide(Side):
     Parameters
     ----------
     kind : int
-        How the node turns (`rigid_nodes.GROUND` and others).
+        How the node turns (`rigid_nodes.POINT` and others).
     node : exudyn.NodeIndex or None
         The node; None for ground.
     reference : ndarray (n,)

@@ -56,7 +56,6 @@ class SpinningSide(Side):
         super().__init__(side.nodes, 0 if node is None else 6)
         self.frame[:] = side.frame
         self.places = np.arange(self.size) + (0 if node is None else node.own.start)
-        self._arm = np.zeros(3)
 
     def update(
         self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None
@@ -64,19 +63,15 @@ class SpinningSide(Side):
         """Fill the frame and Jp, Jr at the system's coordinates ``q`` (n,) and rates u, ``q_t`` (size,)."""
         if self.node is None:
             return
-        turn, v, omega = self.node.turn(q), q_t[self.node.own][:3], q_t[self.node.own][3:]
-        arm = turn @ self.side.rho
-        self.frame[:, :3] = turn @ self.side.rotation
-        self.frame[:, 3] = self.node.position(q) + arm
-        self.frame[:, 4], self.frame[:, 5] = v + np.cross(omega, arm), omega
-        self.jac[0, :, :3] = self.jac[1, :, 3:] = np.eye(3)
-        self.jac[0, :, 3:] = -relative.skew(arm)
-        self._arm = arm
+        turn = self.node.turn(q)
+        self.frame[:, :3], self.frame[:, 3] = turn @ self.side.rotation, self.node.position(q)
+        self.frame[:, 4:], self.jac[:2] = q_t[self.node.own].reshape(2, 3).T, np.eye(6).reshape(2, 3, 6)
+        self.move_point(turn @ self.side.rho)
 
     def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
         """Derivatives (6, n, n) of Jp and Jr by x: the arm turns."""
         out = np.zeros((6, self.size, self.size))
-        rigid_nodes.add_lever(self.jac[1], self._arm, out)
+        rigid_nodes.add_lever(self.jac[1], self.arm, out)
         return out
 
 

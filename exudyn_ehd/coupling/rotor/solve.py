@@ -17,9 +17,9 @@ from typing import NamedTuple, TypeAlias
 
 import exudyn as exu
 import numpy as np
+from exudyn.rigidBodyUtilities import Skew
 
 from exudyn_ehd.coupling.contract import NodeIndex, objects_of
-from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.rotor.films import RotorFilm, film_model
 from exudyn_ehd.coupling.rotor.spinning import WHERE, Rotors, find_rotors
 from exudyn_ehd.coupling.rotor.system import HeldBore, SpinningSystem
@@ -204,7 +204,7 @@ class EquilibriumSearch:
         for k, rotor in enumerate(system.rotors):
             turns = slice(system.nodes[rotor.nodes[0]].own.start + 3, system.nodes[rotor.nodes[0]].own.stop)
             # the driving torque turns with the axis of its node
-            K[turns, turns] -= self.torques[k] * skew(system.axis(k))
+            K[turns, turns] -= self.torques[k] * Skew(system.axis(k))
         held = np.vstack((system.constraints(), system.drives()))
         left, values, right = np.linalg.svd(held)
         rank = int(np.sum(values > ROUNDING * values[0]))

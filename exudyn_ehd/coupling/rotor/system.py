@@ -42,13 +42,13 @@ from exudyn.rigidBodyUtilities import (
     RotationMatrix2EulerParameters,
     RotationMatrix2RotationVector,
     RotationMatrix2RotXYZ,
+    Skew,
 )
 
 from exudyn_ehd.coupling.contract import INITIAL, NodeIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import rigid_nodes
-from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, node_side
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE, Rotor
 from exudyn_ehd.joint.bore.solid import SolidElasticity
@@ -126,7 +126,7 @@ class TurningNode:
         B = np.zeros((self.places.size, 6))
         B[:3, :3], B[3 : own.size, 3:] = np.eye(3), inverse
         for k, arm in enumerate(self._arms(q)):
-            B[own.size + 3 * k : own.size + 3 * k + 3] = np.hstack((np.eye(3), -skew(arm)))
+            B[own.size + 3 * k : own.size + 3 * k + 3] = np.hstack((np.eye(3), -Skew(arm)))
         return B, -inverse @ (self.side.change(None, own)[3:] @ rates @ rates)
 
     def move(self, q: np.ndarray, x: np.ndarray) -> None:
@@ -263,7 +263,7 @@ class SpinningSystem:
         S, u = np.zeros((self.size, self.size)), self.spin()
         for _, node, _ in self.spinning:
             own = slice(node.own.start + 3, node.own.stop)
-            S[own, own] = -skew(u[own])
+            S[own, own] = -Skew(u[own])
         return S
 
     def moved(self, x: np.ndarray, alone: int | None = None) -> np.ndarray:

@@ -220,7 +220,9 @@ def shift_journal(
 
     ``state``: coordinates and rates of the system, changed in place.
     """
-    places = np.array(mbs.systemData.GetNodeLTGODE2(int(journal.nodes[0])))[: rigid_nodes.translations(journal.kind)]
+    places = np.array(mbs.systemData.GetNodeLTGODE2(int(journal.nodes[0])))[
+        : rigid_nodes.translations(journal.kind, journal.size)
+    ]
     # the position is changed, and the velocity relative to the bearing is subtracted
     for values, change in zip(state, (position - motion[:2], -motion[4:6]), strict=True):
         values[places] += (frame[:, :2] @ change)[: places.size]

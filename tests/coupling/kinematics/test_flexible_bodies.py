@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from exudyn.rigidBodyUtilities import Skew
 from scenes import rotation
 
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.flexible_bodies import BodyIntegrals, FloatingBody
-from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
 KINDS = {
@@ -33,9 +33,9 @@ class Particles:
 
     def integrals(self):
         k = MODES
-        x = np.array([skew(v) for v in self.places])
+        x = np.array([Skew(v) for v in self.places])
         # [particle, mode, 3, 3]
-        psi = np.array([[skew(shape[:, i]) for i in range(k)] for shape in self.shapes])
+        psi = np.array([[Skew(shape[:, i]) for i in range(k)] for shape in self.shapes])
         m, shapes = self.masses, self.shapes
         return BodyIntegrals(
             mass=m.sum(),
@@ -67,7 +67,7 @@ class Particles:
         arms = (self.places + self.shapes @ q[self.n :]) @ A.T
         J = np.zeros((PARTICLES, 3, q.size))
         J[:, :, :3] = np.eye(3)
-        J[:, :, : self.n] += np.array([-skew(arm) @ Jr for arm in arms])
+        J[:, :, : self.n] += np.array([-Skew(arm) @ Jr for arm in arms])
         J[:, :, self.n :] = A @ self.shapes
         return J, arms, self.shapes @ q_t[self.n :] @ A.T
 
