@@ -243,8 +243,8 @@ def ConfigureSolver(
     return simulationSettings
 
 
+# Range of asperity contacts, over the composite roughness.
 ROUGHNESSES = 4.0
-LARGEST_GAP_CHANGE = 0.25
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -290,7 +290,7 @@ class StepControl:
     True
     """
 
-    largest_gap_change: float = LARGEST_GAP_CHANGE
+    largest_gap_change: float = 0.25
     error: float | None = None
 
     def __post_init__(self) -> None:
@@ -299,7 +299,7 @@ class StepControl:
         require_number(where, self.largest_gap_change, at_least=0.01, at_most=1.0, hint=hint)
         if self.error is not None:
             require_number("StepControl.error", self.error, at_least=1e-4, at_most=0.5)
-            if self.largest_gap_change != LARGEST_GAP_CHANGE:
+            if self.largest_gap_change != StepControl.largest_gap_change:
                 raise InputError(
                     "StepControl: error is for a whole run, largest_gap_change for one joint; give one StepControl to "
                     "SolveDynamic and another to CreateLubricatedJoint."

@@ -18,7 +18,7 @@ from exudyn_ehd.coupling.element.nodal import ModalFilmElement, NodalFilmElement
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.beams import node_coordinates
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.items.bush import Mount, add_bush
+from exudyn_ehd.coupling.items.bush import add_bush
 from exudyn_ehd.coupling.items.objects import own_equations, require_heavy_housing
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide, initial_frame
 from exudyn_ehd.coupling.kinematics import relative
@@ -127,9 +127,12 @@ def _attach_nodes(
 ) -> NodalFilmElement:
     solid = model.bearing.bush
     assert isinstance(solid, ANCFBush)
-    mount = Mount(sides[0], sides[0].frame.copy(), place[0], gravity is None) if sides[0].nodes else None
+    mount = (sides[0], place[0]) if sides[0].nodes else None
     weight = [] if gravity is None else [Gravity(acceleration=gravity)]
-    bush = add_bush(mbs, f"{name} bush", solid, mount, place, fixed=mount is None, show=show, loads=weight)
+    contained = mount is not None and gravity is None
+    bush = add_bush(
+        mbs, f"{name} bush", solid, mount, place, contained=contained, fixed=mount is None, show=show, loads=weight
+    )
     if bush.equations.contained is not None:
         require_heavy_housing(mbs, item, bush.equations.contained.mass, name)
     start = initial_coordinates(model, sides)

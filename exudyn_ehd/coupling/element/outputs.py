@@ -27,7 +27,7 @@ import exudyn as exu
 import exudyn.graphics
 import exudyn.itemInterface as eii
 import numpy as np
-from exudyn.rigidBodyUtilities import RotationMatrix2RotXYZ
+from exudyn.rigidBodyUtilities import HomogeneousTransformation, RotationMatrix2RotXYZ
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Data, Index, Side, Trial
@@ -214,16 +214,11 @@ def _local(h: np.ndarray, j: np.ndarray, column: int) -> np.ndarray:
     return h[:, :3].T @ (j[:, column] - h[:, column])
 
 
-def _transformation(rotation: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """The 16 components of a homogeneous transformation, row by row."""
-    return np.vstack([np.column_stack([rotation, place]), [0.0, 0.0, 0.0, 1.0]]).ravel()
-
-
 OUTPUTS: dict[str, Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]] = {
     "Position": lambda h, j, load: h[:, 3],
     "Velocity": lambda h, j, load: h[:, 4],
-    "HomogeneousTransformation": lambda h, j, load: _transformation(h[:, :3], h[:, 3]),
-    "HomogeneousTransformationLocal": lambda h, j, load: _transformation(_turn(h, j), _local(h, j, 3)),
+    "HomogeneousTransformation": lambda h, j, load: HomogeneousTransformation(h[:, :3], h[:, 3]),
+    "HomogeneousTransformationLocal": lambda h, j, load: HomogeneousTransformation(_turn(h, j), _local(h, j, 3)),
     "Displacement": lambda h, j, load: j[:, 3] - h[:, 3],
     "DisplacementLocal": lambda h, j, load: _local(h, j, 3),
     "VelocityLocal": lambda h, j, load: _local(h, j, 4),
@@ -258,7 +253,7 @@ def reader(
     asked = getattr(quantity, "name" if isinstance(quantity, exu.OutputVariableType) else "value", quantity)
     if isinstance(asked, str) and asked in OUTPUTS:
         output = OUTPUTS[asked]
-        return asked, lambda mbs: output(*_sensed(mbs, element, constraint))
+        return asked, lambda mbs: np.ravel(output(*_sensed(mbs, element, constraint)))
     if not isinstance(asked, str) or asked not in known:
         raise InputError(
             f"{where}: quantity must be a member of Quantity or its name, one of {', '.join(known)}, or an "

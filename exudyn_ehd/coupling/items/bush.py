@@ -277,8 +277,8 @@ def CreateFlexibleBush(
     )
 
 
-def _carried(mbs: exu.MainSystem, number: Index, place: np.ndarray, rotation: np.ndarray) -> Mount:
-    """Side and initial frame of the bush's frame on an item."""
+def _carried(mbs: exu.MainSystem, number: Index, place: np.ndarray, rotation: np.ndarray) -> tuple[Side, np.ndarray]:
+    """Side of the bush's frame on an item, and its point (3,) in the reference configuration, global [m]."""
     where = "CarriedOuter.itemNumber"
     item = resolve(mbs, where, number)
     if not item.nodes:
@@ -288,39 +288,18 @@ def _carried(mbs: exu.MainSystem, number: Index, place: np.ndarray, rotation: np
             "CreateFlexibleBush.rotationMatrix must keep z normal to the plane of a planar carrier, got the bush axis "
             f"{rotation[:, 2]}."
         )
-    side = item.side(item.position if item.is_marker else place, rotation)
-    return Mount(side, initial_frame(mbs, side), item.position if item.is_marker else place)
-
-
-@dataclass(frozen=True, eq=False)
-class Mount:
-    """Moving frame that carries a bush.
-
-    Parameters
-    ----------
-    side : Side
-        Side whose axes are those of the bush.
-    initial : ndarray (3, 6)
-        The side's frame in the initial configuration.
-    point : ndarray (3,)
-        Global position of the side's frame in the reference configuration [m].
-    contains : bool
-        True if the mass of the carrier already contains that of the bush.
-    """
-
-    side: Side
-    initial: np.ndarray
-    point: np.ndarray
-    contains: bool = False
+    point = item.position if item.is_marker else place
+    return item.side(point, rotation), point
 
 
 def add_bush(
     mbs: exu.MainSystem,
     name: str,
     bush: ANCFBush,
-    mount: Mount | None,
+    mount: tuple[Side, np.ndarray] | None,
     place: tuple[np.ndarray, np.ndarray],
     *,
+    contained: bool = False,
     fixed: bool = False,
     supports: Sequence[Support] = (),
     loads: Sequence[BushLoad] = (),
@@ -332,10 +311,13 @@ def add_bush(
 
     Parameters
     ----------
-    mount : Mount or None
-        None: the outer surface is ``fixed`` or free.
+    mount : (Side, ndarray (3,)) or None
+        Side whose axes are those of the bush, and its point in the reference configuration, global [m]. None: the outer
+        surface is ``fixed`` or free.
     place : ndarray (3,), ndarray (3, 3)
         Bush frame in the reference configuration, global [m].
+    contained : bool
+        True if the mass of the carrier already contains that of the bush.
     start : two ndarrays (3,)
         Initial velocity [m/s] and angular velocity [rad/s] without a mount.
     mbs, name, bush, supports, loads, show, color
@@ -352,8 +334,8 @@ def add_bush(
         held[mesh.outer.nodes] = True
     elif mount is not None:
         slaved[mesh.outer.nodes] = True
-        local = mesh.nodes + rotation.T @ (position - mount.point)
-        carrier = Carrier(mbs, mount.side, local[slaved])
+        local = mesh.nodes + rotation.T @ (position - mount[1])
+        carrier = Carrier(mbs, mount[0], local[slaved])
         if held[slaved].any():
             raise InputError(
                 "CreateFlexibleBush.supports must leave the outer surface to its carrier, got supported outer nodes; "
@@ -373,13 +355,14 @@ def add_bush(
         carrier=carrier,
         loads=loads,
         mass_rate=mass_rate,
-        contained=RigidPart(local, solid.scalar_mass) if mount is not None and mount.contains else None,
+        contained=RigidPart(local, solid.scalar_mass) if contained else None,
     )
     X = solid.mesh.nodes
     if mount is None:
         u, v = np.zeros_like(X), start[0] + np.cross(start[1], X - position)
     else:
-        u, v = positions(mount.initial, local) - X, velocities(mount.initial, local)
+        initial = initial_frame(mbs, mount[0])
+        u, v = positions(initial, local) - X, velocities(initial, local)
     numbers = _add_nodes(mbs, equations, u, v)
     return _add_object(mbs, mesh, equations, numbers, show, color)
 

@@ -16,6 +16,7 @@ import exudyn.itemInterface as eii
 import numpy as np
 from exudyn.rigidBodyUtilities import (
     AngularVelocity2EulerParameters_t,
+    HomogeneousTransformation,
     RigidBodyInertia,
     RotationMatrix2EulerParameters,
 )
@@ -237,9 +238,8 @@ def rigid_marker(
     mbs: exu.MainSystem, name: str, item: Item, point: np.ndarray, rotation: np.ndarray, asked: str
 ) -> Index:
     """Marker on the body of a rigid item, or on ground, at a point (3,) with a frame (3, 3), global."""
-    transform = np.eye(4)
-    transform[:3, :3] = item.node_rotation.T @ rotation
-    transform[:3, 3] = item.node_rotation.T @ (point - item.node_position)
+    local = item.node_rotation.T
+    transform = HomogeneousTransformation(local @ rotation, local @ (point - item.node_position))
     if item.kind == POINT:
         # on a new ground object at the origin, also for a moving point, which does not turn either
         body = mbs.AddObject(eii.ObjectGround(name=name, visualization=eii.VObjectGround(show=False)))

@@ -79,23 +79,11 @@ def hold_fe_surfaces(
             )
         size = bearing.journal_radius + (1 - k) * bearing.radial_clearance, bearing.length
         found, held[k] = _find_surface(mbs, surface, option, items[k], size, (points[k], rotation))
-        if isinstance(surface, FEJournal):
-            mass = _centrifugal_mass(mbs, surface, items[k], points[k], rotation)
-            bearing = dataclasses.replace(bearing, journal=TurningJournal(surface=found, mass=mass))
+        if isinstance(found, TurningJournal):
+            bearing = dataclasses.replace(bearing, journal=found)
         else:
             bearing = dataclasses.replace(bearing, bush=found)
     return bearing, (held[0], held[1])
-
-
-def _centrifugal_mass(
-    mbs: exu.MainSystem, pin: FEJournal, item: Item, point: np.ndarray, rotation: np.ndarray
-) -> np.ndarray:
-    """Phi^T M x (k,) of the places x across the joint's axis, from which centrifugal forces push the modes, kg m."""
-    data = mbs.GetObject(item.body)
-    local = item.node_rotation.T @ rotation
-    places = np.asarray(data["referencePositions"], dtype=float).reshape(-1, 3)
-    across = (places - item.node_rotation.T @ (point - item.node_position)) @ local[:, :2] @ local[:, :2].T
-    return np.asarray(data["modeBasis"], dtype=float).T @ (csr_matrix(pin.fem.massMatrix) @ across.ravel())
 
 
 def _find_surface(
@@ -105,7 +93,7 @@ def _find_surface(
     item: Item,
     size: tuple[float, float],
     place: tuple[np.ndarray, np.ndarray],
-) -> tuple[ReducedBore, Item]:
+) -> tuple[ReducedBore | TurningJournal, Item]:
     """Return the body's surface under a film of radius and length ``size``, and the item that moves with it."""
     where, (radius, length), (point, rotation) = (
         f"CreateLubricatedJoint.bearing with {option}={type(surface).__name__}(...)",
@@ -139,7 +127,13 @@ def _find_surface(
     def build(point: np.ndarray, rotation: np.ndarray) -> FloatingBoreSide:
         return FloatingBoreSide(node_side(mbs, item.nodes[0]), item.nodes[1], origin, local, reduced.rigid)
 
-    return reduced, dataclasses.replace(item, side=build)
+    moved = dataclasses.replace(item, side=build)
+    if not outer:
+        return reduced, moved
+    # the places across the joint's axis, from which centrifugal forces push the modes
+    across = places[:, :2] @ local[:, :2].T
+    mass = basis.T @ (csr_matrix(surface.fem.massMatrix) @ across.ravel())
+    return TurningJournal(surface=reduced, mass=mass), moved
 
 
 class FloatingBoreSide(Side):
