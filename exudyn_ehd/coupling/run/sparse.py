@@ -21,13 +21,9 @@ coordinates, such as those of a turning journal, are few. If they are coupled to
 refactored in every iteration: sparse factors of the meshes, dense ones of the rest. The matrix is assembled in
 `system_matrix`.
 
-With the coordinates b of meshes and r of all the rest, the iteration matrix is solved by
-
-    W = J_bb^-1 J_br,    S = J_rr - J_rb W,
-    y = J_bb^-1 f_b,   x_r = S^-1 (f_r - J_rb y),   x_b = y - W x_r.
-
 Matrices of meshes hardly change, those of turning bodies change in every step. If a mesh is coupled to the rest by
-films only, W = 0 and S = J_rr, which is refactored in each Newton iteration while the factor of the meshes is reused.
+films only, the rest is refactored in each Newton iteration while the factor of the meshes is reused. Else there is one
+factor of the whole matrix.
 
 Only additive coordinates are supported, no Lie group nodes and first-order coordinates. Also not supported are items
 whose Jacobian Exudyn does not return: sliding joints, `GeneralContact`, loads that depend on coordinates.
@@ -47,7 +43,6 @@ import exudyn as exu
 import numpy as np
 from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import SuperLU
 
 from exudyn_ehd.coupling.exudyn_solvers import StepControl, idle, require_control, require_time, user_function
 from exudyn_ehd.coupling.run.newton import StartGuess, state_of
@@ -245,7 +240,8 @@ class SystemFactor:
     ----------
     system : csc_matrix
     mesh : (n,) array of bool
-        Coordinates of meshes. Without meshes, or with many other coordinates, there is one factor of the whole matrix.
+        Coordinates of meshes. If there are none, if other coordinates are coupled to them, or if those are many, there
+        is one factor of the whole matrix.
     pivoting : float
         As in `sparse_factor`, for the factor of the whole matrix.
 
@@ -257,23 +253,18 @@ class SystemFactor:
 
     def __init__(self, system: csc_matrix, mesh: np.ndarray, *, pivoting: float) -> None:
         self.places, self.rest = np.flatnonzero(mesh), np.flatnonzero(~mesh)
-        self.whole: SuperLU | None = None
-        if not len(self.places) or len(self.rest) > LARGEST_REST:
-            self.whole = sparse_factor(system, pivoting=pivoting)
-            self.nbytes, self.coupled = 12 * self.whole.nnz, True
-            return
         # columns first: rows of compressed columns take twenty times as long
-        own, along = (system[:, columns][self.places] for columns in (self.places, self.rest))
-        self.factor = factor = sparse_factor(own)
-        self.nbytes = 12 * factor.nnz
-        self.across = system[self.rest][:, self.places].tocsr()
-        self.coupled = bool(along.nnz or self.across.nnz)
-        self.moved = factor.solve(along.toarray()) if self.coupled else np.zeros(along.shape)
-        self.renew_rest(system)
+        own, beside = (system[:, part][part] for part in (self.places, self.rest))
+        is_split = len(self.places) > 0 and len(self.rest) <= LARGEST_REST
+        self.coupled = not is_split or own.nnz + beside.nnz < system.nnz
+        self.factor = sparse_factor(system, pivoting=pivoting) if self.coupled else sparse_factor(own)
+        self.nbytes = 12 * self.factor.nnz
+        if not self.coupled:
+            self.renew_rest(system)
 
     def renew_rest(self, system: csc_matrix) -> None:
-        """Refactor the coordinates outside of the meshes."""
-        own = system[self.rest][:, self.rest].toarray() - self.across @ self.moved
+        """Refactor the coordinates outside of the meshes, which are not coupled to them."""
+        own = system[:, self.rest][self.rest].toarray()
         with warnings.catch_warnings():
             warnings.simplefilter("error", LinAlgWarning)
             try:
@@ -283,14 +274,12 @@ class SystemFactor:
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Solution (n,) for a right-hand side (n,)."""
-        if self.whole is not None:
-            return self.whole.solve(right)
+        if self.coupled:
+            return self.factor.solve(right)
         out = np.empty(len(right))
-        y, rest = self.factor.solve(right[self.places]), right[self.rest]
+        out[self.places] = self.factor.solve(right[self.places])
         if self.own is not None:
-            out[self.rest] = x = lu_solve(self.own, rest - self.across @ y)
-            y -= self.moved @ x
-        out[self.places] = y
+            out[self.rest] = lu_solve(self.own, right[self.rest])
         return out
 
 
