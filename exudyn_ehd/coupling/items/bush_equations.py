@@ -32,7 +32,7 @@ from exudyn_ehd.coupling.items.objects import warn_if_indefinite
 from exudyn_ehd.coupling.items.reduced_bodies import Carrier, positions, velocities
 from exudyn_ehd.solid.loads import BushLoad, FollowerPressure, dead_forces, factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
-from exudyn_ehd.status import RunError
+from exudyn_ehd.status import ROUNDING, RunError
 
 
 class RigidPart:
@@ -76,10 +76,6 @@ class RigidPart:
         A = frame[:, :3]
         s, second = Skew(A @ self.first), A @ self.second @ A.T
         return np.block([[self.mass * np.eye(3), -s], [s, np.trace(second) * np.eye(3) - second]])
-
-
-HOLD = 1e9
-"""Spring of a single supported direction over the stiffest entry of the mesh."""
 
 
 class BushEquations:
@@ -289,7 +285,8 @@ class BushEquations:
 
     @cached_property
     def _spring(self) -> float:
-        return HOLD * float(self.solid.tangent(np.zeros(self.held.shape)).diagonal().max())
+        """Spring of a single supported direction [N/m], far above the stiffest entry of the mesh."""
+        return float(self.solid.tangent(np.zeros(self.held.shape)).diagonal().max()) / ROUNDING
 
     @cached_property
     def _rounding(self) -> tuple[float, float]:

@@ -35,9 +35,9 @@ NOT_HELD = (
     "CreateLubricatedJoint(axial=ehd.Held())."
 )
 NO_MASS = "{} moves without mass or inertia; give its body both, or hold it."
-# Angle, rad, by which rotors are turned to check that they are the same in all directions, and largest relative
-# difference of their matrices.
-TURN, ISOTROPIC = 1.0, 1e-4
+# Largest relative difference of the matrices of rotors, and of those turned by one radian, which count as the same in
+# all directions.
+ISOTROPIC = 1e-4
 # Smallest stiffness, and smallest mass, of a body over the largest one; rotations are multiplied by a bearing's length.
 # Below them a body counts as not held, or without mass: an error.
 SOFTEST, LIGHTEST = 1e-11, 1e-13
@@ -303,7 +303,7 @@ def require_axis(mbs: exu.MainSystem, system: SpinningSystem) -> None:
 def require_isotropy(system: SpinningSystem, weights: np.ndarray) -> None:
     """Raise `InputError` for rotors that are not the same in all directions, whose equations change as they turn."""
     known, before = system.q, system.matrices()
-    system.q = system.turned(TURN)
+    system.q = system.turned()
     after = system.matrices()
     system.q = known
     scales, inertia = np.outer(weights, weights), np.diag(before[0]) * weights**2
@@ -323,7 +323,7 @@ def require_steady_load(system: SpinningSystem, weights: np.ndarray, free: np.nd
     """Raise `InputError` for loads that turn with a rotor, such as an unbalance; ``size``: load of the films, N."""
     known, u = system.q, system.spin()
     before = system.balance(known, u)[0]
-    change = np.abs(weights * (free @ (free.T @ (system.balance(system.turned(TURN), u)[0] - before))))
+    change = np.abs(weights * (free @ (free.T @ (system.balance(system.turned(), u)[0] - before))))
     if change.max() > ISOTROPIC * size:
         raise InputError(
             f"{WHERE}: the load of {named(system, int(np.argmax(change)))} turns with the rotor, by {change.max():.3g} "

@@ -351,11 +351,11 @@ class SpinningSystem:
             rows[k, self.nodes[rotor.nodes[0]].own][3:] = self.axis(k)
         return rows
 
-    def turned(self, angle: float) -> np.ndarray:
-        """Coordinates (n,) of the state after all rotors have turned by an angle, rad."""
+    def turned(self) -> np.ndarray:
+        """Coordinates (n,) of the state after all rotors have turned by one radian."""
         q = self.q.copy()
         for _, node, axis in self.spinning:
-            node.move(q, np.concatenate((np.zeros(3), angle * (node.turn(self.q) @ axis))))
+            node.move(q, np.concatenate((np.zeros(3), node.turn(self.q) @ axis)))
         return q
 
     def _enter(self, q: np.ndarray, rates: np.ndarray) -> None:
