@@ -18,6 +18,7 @@ import exudyn as exu
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import CURRENT, Trial
 from exudyn_ehd.coupling.kinematics.relative import BoreGap
+from exudyn_ehd.joint.spherical.steady import TOUCHING
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import InputError, require_bool, require_number, require_type, warn_user
 
@@ -243,10 +244,6 @@ def ConfigureSolver(
     return simulationSettings
 
 
-# Range of asperity contacts, over the composite roughness.
-ROUGHNESSES = 4.0
-
-
 @dataclass(frozen=True, kw_only=True)
 class StepControl:
     """Step control: limit the change of the gap in a step, or choose the steps of a run by their error.
@@ -351,7 +348,7 @@ class GapWatch:
         if bearing.contact is not None:
             ranges.append(bearing.contact.onset)
         if bearing.asperity is not None:
-            ranges.append(ROUGHNESSES * bearing.asperity.composite_roughness)
+            ranges.append(TOUCHING * bearing.asperity.composite_roughness)
         self.ranges = [max(ranges), 0.0]
         if faces is not None:
             least = SMALLEST_GAP_SHARE * faces.clearance

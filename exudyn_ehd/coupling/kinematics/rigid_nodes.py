@@ -133,57 +133,52 @@ def _turn_tait_bryan(v0, v1, v2, a_out, jr_out):
 
 
 @njit(cache=True)
-def turn(kind, q, reference, a_out, jr_out, theta_out):
+def turn(kind, q, reference):
     """Rotation of a node with coordinates ``q`` and reference values ``reference`` (n,).
 
     Parameters
     ----------
     kind, q, reference
         As in `node_frame`.
-    a_out : ndarray (3, 3)
-        Node to global.
-    jr_out : ndarray (3, 4)
-        Jr in the first m columns.
-    theta_out : ndarray (4,)
-        The m coordinates of the rotation with their reference values.
 
     Returns
     -------
-    int
-        m.
+    a : ndarray (3, 3)
+        Node to global.
+    jr : ndarray (3, 4)
+        Jr in the first m columns.
+    theta : ndarray (4,)
+        The m coordinates of the rotation with their reference values.
+    m : int
     """
+    a, jr, theta = np.zeros((3, 3)), np.zeros((3, 4)), np.zeros(4)
     nt = translations(kind, q.size)
     m = q.size - nt
-    for k in range(4):
-        theta_out[k] = q[nt + k] + reference[nt + k] if k < m else 0.0
+    for k in range(m):
+        theta[k] = q[nt + k] + reference[nt + k]
     for i in range(3):
-        for j in range(3):
-            a_out[i, j] = 1.0 if i == j else 0.0
-        for j in range(4):
-            jr_out[i, j] = 0.0
-    v0, v1, v2, v3 = theta_out[0], theta_out[1], theta_out[2], theta_out[3]
+        a[i, i] = 1.0
+    v0, v1, v2, v3 = theta[0], theta[1], theta[2], theta[3]
     if kind == EULER_PARAMETERS:
-        norm2 = _rotation_euler(v0, v1, v2, v3, a_out)
-        _euler_g(v0, v1, v2, v3, jr_out)
+        norm2 = _rotation_euler(v0, v1, v2, v3, a)
+        _euler_g(v0, v1, v2, v3, jr)
         for i in range(3):
             for j in range(4):
-                jr_out[i, j] /= norm2
+                jr[i, j] /= norm2
     elif kind == TAIT_BRYAN:
-        _turn_tait_bryan(v0, v1, v2, a_out, jr_out)
+        _turn_tait_bryan(v0, v1, v2, a, jr)
     elif kind == ROTATION_VECTOR:
-        _turn_vector(v0, v1, v2, a_out, jr_out)
+        _turn_vector(v0, v1, v2, a, jr)
     elif kind == PLANAR:
-        jr_out[2, 0] = 1.0
-        a_out[0, 0], a_out[0, 1] = np.cos(v0), -np.sin(v0)
-        a_out[1, 0], a_out[1, 1] = np.sin(v0), np.cos(v0)
-    return m
+        jr[2, 0] = 1.0
+        a[0, 0], a[0, 1] = np.cos(v0), -np.sin(v0)
+        a[1, 0], a[1, 1] = np.sin(v0), np.cos(v0)
+    return a, jr, theta, m
 
 
 def rotation_of(kind: int, reference: np.ndarray) -> np.ndarray:
     """Rotation matrix (3, 3), node to global, of a node with coordinates ``reference`` (n,)."""
-    a = np.empty((3, 3))
-    turn(kind, np.zeros_like(reference), reference, a, np.empty((3, 4)), np.empty(4))
-    return a
+    return turn(kind, np.zeros_like(reference), reference)[0]
 
 
 @njit(cache=True, inline="always")
@@ -228,8 +223,7 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
         Entries 0 and 1 are written.
     """
     nt = translations(kind, q.size)
-    a, jr, theta = np.empty((3, 3)), np.empty((3, 4)), np.empty(4)
-    m = turn(kind, q, reference, a, jr, theta)
+    a, jr, _, m = turn(kind, q, reference)
     s = times(a, (rho[0], rho[1], rho[2]))
     for i in range(3):
         for j in range(3):
@@ -257,8 +251,8 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
 def node_change(kind, q, reference, rho, change_out):
     """Fill ``change_out`` (6, n, n): derivatives d J[i, a] / dq_b of J = [Jp, Jr]; arguments as in `node_frame`."""
     nt = translations(kind, q.size)
-    a, jr, theta, w = np.empty((3, 3)), np.zeros((3, 4)), np.empty(4), np.empty((3, 4, 4))
-    m = turn(kind, q, reference, a, jr, theta)
+    a, jr, theta, m = turn(kind, q, reference)
+    w = np.empty((3, 4, 4))
     _turn_change(kind, theta, jr, w)
     s = times(a, (rho[0], rho[1], rho[2]))
     change_out.fill(0.0)
