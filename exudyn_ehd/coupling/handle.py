@@ -176,7 +176,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
             grid = FiniteLength(n_theta=film.n_theta, n_z=film.n_z, stretch=film.stretch)
             model = build_model(dataclasses.replace(model.bearing, film=grid))
             return model.evaluate(trial.motion).fields(time)
-        return self.element.fields(self.mbs, time, trial, configuration)
+        return self.element.fields(time, trial, configuration)
 
     def record_films(self, *, period: float = 0.0, frames: int = 400) -> None:
         """Keep the film at regular instants of the runs that follow, for `films`, `animate` and `export_vtk`.

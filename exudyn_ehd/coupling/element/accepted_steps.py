@@ -72,9 +72,7 @@ class SteppedElement(Protocol):
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record; None without a film."""
 
-    def fields(
-        self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType
-    ) -> FilmFields:
+    def fields(self, time: float, trial: Trial, configuration: exu.ConfigurationType) -> FilmFields:
         """Fields of the film at a trial, which must be the last one."""
 
     def forget(self) -> None:
@@ -188,7 +186,7 @@ class AcceptedSteps:
             if not resumed or start > self.record.last_time:
                 self.record.append(row)
                 if self.recorder is not None:
-                    self.recorder.offer(start, lambda: self.film.fields(mbs, start, trial, START_OF_STEP))
+                    self.recorder.offer(start, lambda: self.film.fields(start, trial, START_OF_STEP))
             for observe in self.observers:
                 observe(trial)
             if start > self.start:

@@ -185,7 +185,6 @@ class NodalFilmElement(FilmElement):
         self.reference = bush.solid.mesh.nodes[bush.mesh.bore.nodes]
         self.place = bush.mesh.bore.positions
         self.count = len(self.place)
-        self._nodal: tuple[JointEvaluation | None, np.ndarray] = (None, np.zeros((0, 3)))
         self.arms = np.zeros((self.count, 3))
         self.drift = np.zeros((self.count, 3))
 
@@ -205,9 +204,7 @@ class NodalFilmElement(FilmElement):
 
     def nodal_forces(self, evaluation: ElasticEvaluation) -> np.ndarray:
         """Forces on the bore's nodes (count, 3), joint frame, N."""
-        if self._nodal[0] is not evaluation:
-            self._nodal = evaluation, evaluation.nodal_forces()
-        return complete(self.arms @ self.sides[0].frame[:, :3], evaluation.wrench, self._nodal[1])
+        return complete(self.arms @ self.sides[0].frame[:, :3], evaluation.wrench, evaluation.nodal_forces())
 
     def _quantities(self, evaluation: JointEvaluation) -> dict[str, float]:
         assert isinstance(evaluation, ElasticEvaluation)

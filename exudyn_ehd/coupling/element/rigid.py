@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -34,9 +33,6 @@ from exudyn_ehd.joint.model.results import FilmFields
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.thrust import ThrustModel
 from exudyn_ehd.status import InputError, Status
-
-_Values: TypeAlias = list[float]
-_Configuration: TypeAlias = exu.ConfigurationType
 
 
 class FilmElement:
@@ -140,7 +136,13 @@ class FilmElement:
         return trial.status != Status.NO_PRESSURE or found is None or not np.isfinite(found.wrench.sum())
 
     def _try(
-        self, mbs: exu.MainSystem, q: _Values, q_t: _Values, where: _Configuration, time: float, stepping: bool = True
+        self,
+        mbs: exu.MainSystem,
+        q: list[float],
+        q_t: list[float],
+        configuration: exu.ConfigurationType,
+        time: float,
+        stepping: bool = True,
     ) -> Trial:
         """Return the film at a state, evaluated unless it is the last one; the sides' arrays are updated.
 
@@ -161,7 +163,7 @@ class FilmElement:
             return last
         peeked, self._peeked = self._peeked, None
         here = peeked is not None and peeked[0] == q and peeked[1] == q_t
-        bodies = motion = peeked[2] if peeked is not None and here else self._move(mbs, q, q_t, where)
+        bodies = motion = peeked[2] if peeked is not None and here else self._move(mbs, q, q_t, configuration)
         if begin is not None:
             motion = begin.film_motion(bodies, time)
         # an interrupt may leave the model between two states, so that the last trial is not valid any more
@@ -314,7 +316,7 @@ class FilmElement:
         bearing = self.model.bearing
         return motion[:10], eccentricity_ratios(motion, bearing.radial_clearance, bearing.length)
 
-    def fields(self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: _Configuration) -> FilmFields:
+    def fields(self, time: float, trial: Trial, configuration: exu.ConfigurationType) -> FilmFields:
         """Fields of the film at the last trial, which must be that of the state in ``configuration``."""
         if not isinstance(trial.evaluation, Evaluation):
             raise InputError(f"'{self.failures.name}' has no film around a journal; see thrust_... in its history.")

@@ -228,24 +228,18 @@ def beam_item(
     mbs: exu.MainSystem, where: str, nodes: tuple[Index, ...], length: float, transform: np.ndarray | None = None
 ) -> Item:
     """Element of a geometrically exact beam, or a marker on one at ``transform`` (4, 4), local coordinates."""
-    first, second = (node_side(mbs, node) for node in nodes)
-    ends = first, second
-    share = None if transform is None else 0.5 + float(transform[0, 3]) / length
-    position = 0.5 * (ends[0].frame[:, 3] + ends[1].frame[:, 3])
-    rotation = BeamSide(ends, 0.5 if share is None else share, position, np.eye(3)).section()
-    if transform is not None:
-        assert share is not None
-        position = (1.0 - share) * ends[0].frame[:, 3] + share * ends[1].frame[:, 3]
-        position = position + rotation[:, 1:] @ transform[1:3, 3]
-        rotation = rotation @ transform[:3, :3]
+    ends, local = (node_side(mbs, nodes[0]), node_side(mbs, nodes[1])), np.eye(4) if transform is None else transform
+    share = 0.5 + float(local[0, 3]) / length
+    section = BeamSide(ends, share, np.zeros(3), np.eye(3)).section()
+    place = (1.0 - share) * ends[0].frame[:, 3] + share * ends[1].frame[:, 3]
     return Item(
-        position=position,
-        rotation=rotation,
+        position=place + section[:, 1:] @ local[1:3, 3],
+        rotation=section @ local[:3, :3],
         is_marker=transform is not None,
         kind=None,
         planar=ends[0].kind == rigid_nodes.PLANAR,
         nodes=nodes,
-        side=lambda point, joint: beams.beam_side(where, ends, share, point, joint),
+        side=lambda point, joint: beams.beam_side(where, ends, None if transform is None else share, point, joint),
     )
 
 

@@ -262,16 +262,14 @@ class Presence:
                 f"LubricatedJoint '{self.name}': its object is no longer in the system, after mbs.Reset() or "
                 "mbs.DeleteObject(...); create the joint again."
             )
-        same = number == self.number and _nodes(mbs, number) == self.nodes
-        for marker, as_made in self.markers:
-            same = same and int(marker) < mbs.systemData.NumberOfMarkers() and _marker(mbs, marker) == as_made
-        if same:
-            return
-        raise InputError(
-            f"LubricatedJoint '{self.name}': items of the system were deleted after the joint was created, and Exudyn "
-            f"has renumbered the others: the joint's object {self.number} on nodes {self.nodes} is now object {number} "
-            f"on nodes {_nodes(mbs, number)}; delete items before CreateLubricatedJoint."
-        )
+        count, nodes = mbs.systemData.NumberOfMarkers(), _nodes(mbs, number)
+        same = all(int(marker) < count and _marker(mbs, marker) == as_made for marker, as_made in self.markers)
+        if not (same and number == self.number and nodes == self.nodes):
+            raise InputError(
+                f"LubricatedJoint '{self.name}': items of the system were deleted after the joint was created, and "
+                f"Exudyn has renumbered the others: the joint's object {self.number} on nodes {self.nodes} is now "
+                f"object {number} on nodes {nodes}; delete items before CreateLubricatedJoint."
+            )
 
 
 def force_owner(mbs: exu.MainSystem, number: int, name: str = "forceUserFunction") -> object:

@@ -6,15 +6,11 @@ import dataclasses
 import itertools
 import math
 from collections.abc import Callable, Mapping
-from typing import TypeAlias
 
 import numpy as np
 
 from exudyn_ehd.status import ROUNDING, InputError, require_number
 from exudyn_ehd.tables import Table
-
-Columns: TypeAlias = Mapping[str, np.ndarray]
-"""The columns of a `JointHistory` by name."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,8 +102,8 @@ def revolution_times(time: np.ndarray, omega: np.ndarray) -> np.ndarray:
     return np.concatenate((time[:1], time[at - 1] + share * (time[at] - time[at - 1])))
 
 
-def revolutions(history: Columns, period: float | None = None) -> Revolutions:
-    """Summarise the whole revolutions of a history; see `JointHistory.revolutions`."""
+def revolutions(history: Mapping[str, np.ndarray], period: float | None = None) -> Revolutions:
+    """Summarise the whole revolutions of a history, given by its columns; see `JointHistory.revolutions`."""
     time = history["time"]
     if time.size < 2:
         raise InputError("JointHistory.revolutions: the history has no steps; run a solver first.")
@@ -132,7 +128,7 @@ def revolutions(history: Columns, period: float | None = None) -> Revolutions:
     return Revolutions(**{name: np.array([row[name] for row in rows]) for name in rows[0]})
 
 
-def _summary(history: Columns, start: float, end: float) -> dict[str, float]:
+def _summary(history: Mapping[str, np.ndarray], start: float, end: float) -> dict[str, float]:
     time = history["time"]
     # edges are sums of many steps: a step on an edge belongs to both sides, to rounding
     slack = ROUNDING * (end - start)

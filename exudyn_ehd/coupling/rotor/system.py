@@ -33,7 +33,7 @@ frequencies of its vibrations are far above those of a rotor.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, TypeAlias, cast
+from typing import Any, cast
 
 import exudyn as exu
 import numpy as np
@@ -66,7 +66,6 @@ COORDINATES_OF = {
     rigid_nodes.ROTATION_VECTOR: RotationMatrix2RotationVector,
 }
 """Functions from a rotation (3, 3) to a node's coordinates, by the kind of these."""
-NodeRates: TypeAlias = tuple[np.ndarray, np.ndarray]
 
 
 class TurningNode:
@@ -111,17 +110,13 @@ class TurningNode:
         """Distances (k, 3) of the carried nodes, m."""
         return self.carried + q[self.places[self.count :]].reshape(-1, 3) - self.position(q)
 
-    def rates(self, q: np.ndarray, omega: np.ndarray) -> NodeRates:
+    def rates(self, q: np.ndarray, omega: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """B (n + 3 k, 6), and the second derivatives (m,) of the rotation's coordinates at constant omega (3,)."""
         own = q[self.places[: self.count]]
         rates = np.zeros(own.size)
         self.side.update(None, own, rates, None)
-        turns = self.side.jac[1, :, 3:]
-        if self.side.kind == rigid_nodes.TAIT_BRYAN:
-            inverse = np.linalg.inv(turns)
-        else:
-            # columns or rows are orthogonal and of one length; Euler parameters keep theirs
-            inverse = turns.T / (turns[0] @ turns[0])
+        # Euler parameters keep their length
+        inverse = np.linalg.pinv(self.side.jac[1, :, 3:])
         rates[3:] = inverse @ omega
         B = np.zeros((self.places.size, 6))
         B[:3, :3], B[3 : own.size, 3:] = np.eye(3), inverse
@@ -275,7 +270,11 @@ class SpinningSystem:
         return q
 
     def balance(
-        self, q: np.ndarray, u: np.ndarray, known: Mapping[int, NodeRates] | None = None, moved: int = -1
+        self,
+        q: np.ndarray,
+        u: np.ndarray,
+        known: Mapping[int, tuple[np.ndarray, np.ndarray]] | None = None,
+        moved: int = -1,
     ) -> tuple[np.ndarray, np.ndarray]:
         """r (size,) at coordinates q (n,), rates u and u_t = 0, and the constraints' errors (m,).
 
