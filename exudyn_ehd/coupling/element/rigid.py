@@ -186,8 +186,7 @@ class FilmElement:
 
         It is the motion of the rigid surfaces (10,), followed by the coordinates and rates of a flexible bore (2 k,).
         """
-        if self._places is None:
-            self._find_places(mbs)
+        self._find_places(mbs)
         n = self.rigid_size
         rigid = motion_between(mbs, self.sides, np.array(q[:n]), np.array(q_t[:n]), configuration, self.kinematics)
         if not self.bore_nodes:
@@ -195,11 +194,12 @@ class FilmElement:
         return np.concatenate((rigid, *self._bore_motion(np.array(q[n:]), np.array(q_t[n:]))))
 
     def _find_places(self, mbs: exu.MainSystem) -> np.ndarray:
-        """Bind the sides to an assembled system; return the indices of the element's coordinates."""
-        self.presence.require(mbs)
-        bind(mbs, *self.sides)
-        places = [place for node in self.nodes for place in mbs.systemData.GetNodeLTGODE2(int(node))]
-        self._places = np.array(places, dtype=int)
+        """Return the indices of the element's coordinates in an assembled system; the first call binds the sides."""
+        if self._places is None:
+            self.presence.require(mbs)
+            bind(mbs, *self.sides)
+            places = [place for node in self.nodes for place in mbs.systemData.GetNodeLTGODE2(int(node))]
+            self._places = np.array(places, dtype=int)
         return self._places
 
     def _bore_motion(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -225,11 +225,8 @@ class FilmElement:
         n = self.rigid_size
         if trial.faces is None:
             return np.zeros((n, n))
-        state, (wrench, tangent) = (
-            (np.array(trial.q[:n]), np.array(trial.q_t[:n])),
-            (trial.faces.wrench, trial.faces.tangent()),
-        )
-        stiffness, damping, _, _ = derivatives_between(mbs, self.sides, state, wrench, tangent, self.collars)
+        state, loads = (np.array(trial.q[:n]), np.array(trial.q_t[:n])), (trial.faces.wrench, trial.faces.tangent())
+        stiffness, damping, _, _ = derivatives_between(mbs, self.sides, state, *loads, self.collars)
         return -(f_q * stiffness + f_qt * damping)
 
     def _rigid_derivatives(
@@ -273,7 +270,7 @@ class FilmElement:
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element in a configuration."""
-        data, places = mbs.systemData, self._find_places(mbs) if self._places is None else self._places
+        data, places = mbs.systemData, self._find_places(mbs)
         q, q_t = data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration)
         return np.asarray(q)[places].tolist(), np.asarray(q_t)[places].tolist()
 

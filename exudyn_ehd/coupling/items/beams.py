@@ -148,9 +148,8 @@ def beam_side(
 
 def body_frame(mbs: exu.MainSystem, body: Index, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Position (3,) and rotation (3, 3) of a body in the reference state at local coordinates (3,)."""
-    kinds, reference = exu.OutputVariableType, REFERENCE
-    place = mbs.GetObjectOutputBody(body, kinds.Position, local.tolist(), reference)
-    turn = mbs.GetObjectOutputBody(body, kinds.RotationMatrix, local.tolist(), reference)
+    place = mbs.GetObjectOutputBody(body, exu.OutputVariableType.Position, local.tolist(), REFERENCE)
+    turn = mbs.GetObjectOutputBody(body, exu.OutputVariableType.RotationMatrix, local.tolist(), REFERENCE)
     return np.array(place), np.array(turn).reshape(3, 3)
 
 

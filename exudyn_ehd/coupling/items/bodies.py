@@ -189,9 +189,8 @@ def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tupl
 
 def _slope_pair_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
     """Node of an ANCF beam."""
-    output, reference = exu.OutputVariableType, REFERENCE
-    place = np.array(mbs.GetNodeOutput(node, output.Position, reference))
-    frame = np.array(mbs.GetNodeOutput(node, output.RotationMatrix, reference)).reshape(3, 3)
+    place = np.array(mbs.GetNodeOutput(node, exu.OutputVariableType.Position, REFERENCE))
+    frame = np.array(mbs.GetNodeOutput(node, exu.OutputVariableType.RotationMatrix, REFERENCE)).reshape(3, 3)
     return Item(
         position=place,
         rotation=frame,

@@ -326,9 +326,8 @@ class BoreGap:
             depths = [profile.depth(theta, z, bearing.length) for profile in profiles]
             self.depth = np.sum([lobes + np.zeros(ALONG), *depths], axis=0)
             self.widest += float(self.depth.max())
-            ones = np.ones(ALONG)
             c, s = np.cos(theta)[:, None], np.sin(theta)[:, None]
-            self.normals = np.stack((c * ones, s * ones, c * z, s * z), axis=-1)
+            self.normals = np.stack(np.broadcast_arrays(c, s, c * z, s * z), axis=-1)
         # bearings that are no cylinders provide their own directions
         own = getattr(bearing, "gap_normals", None)
         if own is not None:

@@ -234,8 +234,6 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
             f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
         )
     fields: dict[str, Any] = {name: value if value.ndim else float(value) for name, value in values.items()}
-    # files of before records could be thinned have all steps
-    fields.setdefault("step_count", np.arange(fields["time"].size))
     return JointHistory(**fields).between(start, end)
 
 

@@ -137,10 +137,7 @@ def _transmits(data: Data) -> bool:
 def _node_of_marker(mbs: exu.MainSystem, marker: Index) -> int:
     """Node of the rigid body or the node that a marker sits on; -1 for anything else."""
     data = mbs.GetMarker(MarkerIndex(int(marker)))
-    if "nodeNumber" in data:
-        node = int(data["nodeNumber"])
-    elif "bodyNumber" in data:
-        node = int(mbs.GetObject(ObjectIndex(int(data["bodyNumber"]))).get("nodeNumber", -1))
-    else:
-        return -1
+    if "bodyNumber" in data:
+        data = mbs.GetObject(ObjectIndex(int(data["bodyNumber"])))
+    node = int(data.get("nodeNumber", -1))
     return node if node >= 0 and mbs.GetNode(NodeIndex(node))["nodeType"] in TURNING else -1

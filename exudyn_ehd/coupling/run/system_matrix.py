@@ -210,10 +210,12 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
     """Triplets of a body, connector or constraint through Exudyn's own matrices."""
     kind = exu.ComputeItemType
     offered = mbs.ComputeItem(item)
-    terms = [(k, i) for i, k in enumerate((kind.MassMatrix, kind.JacobianODE2, kind.JacobianODE2_t)) if k in offered]
     constrained = kind.ConstraintJacobian in offered and len(equations) > 0
     values = mbs.GetObject(item)
     object_type = values["objectType"]
+    hidden = is_hidden(object_type)
+    matrices = enumerate((kind.MassMatrix, kind.JacobianODE2, kind.JacobianODE2_t))
+    terms = [(k, i) for i, k in matrices if k in offered and not (hidden and k is kind.MassMatrix)]
     if constrained and object_type not in _CONSTRAINTS:
         raise InputError(
             f"SolveDynamicSparse mbs must hold constraints between markers only, got object {int(item)} of type "
@@ -221,8 +223,6 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
         )
     # solved for velocities whatever the settings are
     by_rates = object_type == "JointRollingDisc" or bool(values.get("velocityLevel", False))
-    if hidden := is_hidden(object_type):
-        terms = [(what, i) for what, i in terms if what is not kind.MassMatrix]
     for what, _ in terms:
         try:
             mbs.ComputeItem(item, what)
