@@ -103,10 +103,8 @@ def slope_frame(S, Sx, q, q_t, d0, rho, a_loc, frame_out, jac_out):
         arm, omega = cross(turn, w), combined(omega, 1.0, turn, q_t[k])
         for i in range(3):
             jac_out[0, i, k], jac_out[1, i, k] = S[i, k] + arm[i], turn[i]
-    axes, place, speed, spun = a @ a_loc, S @ q, S @ q_t, cross(omega, w)
+    frame_out[:, :3], place, speed, spun = a @ a_loc, S @ q, S @ q_t, cross(omega, w)
     for i in range(3):
-        for j in range(3):
-            frame_out[i, j] = axes[i, j]
         frame_out[i, 3], frame_out[i, 4], frame_out[i, 5] = place[i] + w[i], speed[i] + spun[i], omega[i]
 
 

@@ -116,9 +116,7 @@ def _turn_vector(v0, v1, v2, a_out, jr_out):
     # sin(half) / angle stays accurate for small angles, 1 - cos(angle) would not
     sinc = 0.5 * (1.0 - half * half / 6.0) if half < 1e-4 else np.sin(half) / angle
     _rotation_euler(np.cos(half), sinc * v0, sinc * v1, sinc * v2, a_out)
-    for i in range(3):
-        for j in range(3):
-            jr_out[i, j] = a_out[i, j]
+    _rotation_euler(np.cos(half), sinc * v0, sinc * v1, sinc * v2, jr_out)
 
 
 @njit(cache=True, inline="always")
@@ -228,15 +226,11 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
     for i in range(3):
         for j in range(3):
             frame_out[i, j] = a[i, 0] * a_loc[0, j] + a[i, 1] * a_loc[1, j] + a[i, 2] * a_loc[2, j]
-        frame_out[i, 3] = s[i]
-        omega_i = 0.0
+        frame_out[i, 3], frame_out[i, 5] = s[i], 0.0
         for k in range(m):
-            omega_i += jr[i, k] * q_t[nt + k]
-        frame_out[i, 5] = omega_i
+            frame_out[i, 5] += jr[i, k] * q_t[nt + k]
     frame_out[0, 4], frame_out[1, 4], frame_out[2, 4] = cross(column(frame_out, SPIN), s)
-    for i in range(3):
-        for k in range(q.size):
-            jac_out[0, i, k] = jac_out[1, i, k] = 0.0
+    jac_out[:2] = 0.0
     for i in range(nt):
         frame_out[i, 3] += q[i] + reference[i]
         frame_out[i, 4] += q_t[i]
