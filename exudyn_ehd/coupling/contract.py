@@ -163,11 +163,13 @@ class Side:
 
     def __init__(self, nodes: list[Index], size: int) -> None:
         self.nodes, self.size = nodes, size
-        self.frame, self.jac, self.arm = np.zeros((3, 6)), np.zeros((4, 3, size)), np.zeros(3)
+        self.frame, self.jac = np.zeros((3, 6)), np.zeros((4, 3, size))
+        self.arm = np.zeros(3)
 
     def move_point(self, arm: np.ndarray) -> None:
         """Move the point of the frame and of Jp by an arm (3,) that turns with the frame, global [m]."""
-        self.arm, lever = arm, Skew(arm)
+        self.arm = arm
+        lever = Skew(arm)
         self.frame[:, 3] += arm
         self.frame[:, 4] -= lever @ self.frame[:, 5]
         self.jac[0] -= lever @ self.jac[1]

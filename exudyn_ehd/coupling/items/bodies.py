@@ -227,7 +227,8 @@ def beam_item(
     mbs: exu.MainSystem, where: str, nodes: tuple[Index, ...], length: float, transform: np.ndarray | None = None
 ) -> Item:
     """Element of a geometrically exact beam, or a marker on one at ``transform`` (4, 4), local coordinates."""
-    ends, local = (node_side(mbs, nodes[0]), node_side(mbs, nodes[1])), np.eye(4) if transform is None else transform
+    ends = node_side(mbs, nodes[0]), node_side(mbs, nodes[1])
+    local = np.eye(4) if transform is None else transform
     share = 0.5 + float(local[0, 3]) / length
     section = BeamSide(ends, share, np.zeros(3), np.eye(3)).section()
     place = (1.0 - share) * ends[0].frame[:, 3] + share * ends[1].frame[:, 3]

@@ -262,7 +262,8 @@ class Presence:
                 f"LubricatedJoint '{self.name}': its object is no longer in the system, after mbs.Reset() or "
                 "mbs.DeleteObject(...); create the joint again."
             )
-        count, nodes = mbs.systemData.NumberOfMarkers(), _nodes(mbs, number)
+        nodes = _nodes(mbs, number)
+        count = mbs.systemData.NumberOfMarkers()
         same = all(int(marker) < count and _marker(mbs, marker) == as_made for marker, as_made in self.markers)
         if not (same and number == self.number and nodes == self.nodes):
             raise InputError(

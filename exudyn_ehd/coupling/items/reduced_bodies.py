@@ -172,8 +172,10 @@ class FloatingBoreSide(Side):
             self.frame[:] = np.nan
             return
         floating.update(mbs, q[:n], q_t[:n], configuration)
-        A, turn = floating.frame[:, :3], self.turn @ q[n:]
-        self.frame[:, 3:], self.jac[:2, :, :n] = floating.frame[:, 3:], floating.jac[:2]
+        A = floating.frame[:, :3]
+        turn = self.turn @ q[n:]
+        self.frame[:, 3:] = floating.frame[:, 3:]
+        self.jac[:2, :, :n] = floating.jac[:2]
         self.jac[1, :, n:] = 0.0
         self.move_point(A @ (self.origin + self.shift @ q[n:]))
         self.jac[0, :, n:] = A @ self.shift

@@ -176,7 +176,8 @@ class BeamSide(Side):
             return
         self._update_ends(q, q_t)
         section = self.section()
-        self.frame[:, :3], self.frame[:, 3:] = section @ self.rotation, self._mean()
+        self.frame[:, :3] = section @ self.rotation
+        self.frame[:, 3:] = self._mean()
         for end, weight, place in self.parts:
             self.jac[:2, :, place] = weight * end.jac[:2]
         self.move_point(section @ self.rho)

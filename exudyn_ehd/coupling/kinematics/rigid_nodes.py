@@ -226,7 +226,8 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
     for i in range(3):
         for j in range(3):
             frame_out[i, j] = a[i, 0] * a_loc[0, j] + a[i, 1] * a_loc[1, j] + a[i, 2] * a_loc[2, j]
-        frame_out[i, 3], frame_out[i, 5] = s[i], 0.0
+        frame_out[i, 3] = s[i]
+        frame_out[i, 5] = 0.0
         for k in range(m):
             frame_out[i, 5] += jr[i, k] * q_t[nt + k]
     frame_out[0, 4], frame_out[1, 4], frame_out[2, 4] = cross(column(frame_out, SPIN), s)

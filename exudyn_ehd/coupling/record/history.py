@@ -103,7 +103,8 @@ _PLACES = {
     for (name, size), end in zip(_SIZES.items(), itertools.accumulate(_SIZES.values()), strict=True)
 }
 TANGENT, LOAD, FORCE = (_PLACES[name] for name in ("tangent", "load", "force"))
-WIDTH, SETTLED_WIDTH = LOAD.stop, sum(_SIZES.values())
+WIDTH = LOAD.stop
+SETTLED_WIDTH = sum(_SIZES.values())
 TIME, MINIMUM_GAP, PEAK_PRESSURE, STEP_COUNT, STEP_ERROR = (
     _PLACES[name].start for name in ("time", "minimum_gap", "peak_pressure", "step_count", "step_error")
 )

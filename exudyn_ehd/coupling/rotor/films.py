@@ -64,8 +64,10 @@ class SpinningSide(Side):
         if self.node is None:
             return
         turn = self.node.turn(q)
-        self.frame[:, :3], self.frame[:, 3] = turn @ self.side.rotation, self.node.position(q)
-        self.frame[:, 4:], self.jac[:2] = q_t[self.node.own].reshape(2, 3).T, np.eye(6).reshape(2, 3, 6)
+        self.frame[:, :3] = turn @ self.side.rotation
+        self.frame[:, 3] = self.node.position(q)
+        self.frame[:, 4:] = q_t[self.node.own].reshape(2, 3).T
+        self.jac[:2] = np.eye(6).reshape(2, 3, 6)
         self.move_point(turn @ self.side.rho)
 
     def change(self, mbs: exu.MainSystem | None, q: np.ndarray) -> np.ndarray:
