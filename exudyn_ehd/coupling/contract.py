@@ -166,6 +166,9 @@ class Side:
         self.frame, self.jac = np.zeros((3, 6)), np.zeros((4, 3, size))
         self.arm = np.zeros(3)
 
+    def bind(self, mbs: exu.MainSystem) -> None:
+        """Find what is known only in an assembled system; sides on nodes know everything before."""
+
     def move_point(self, arm: np.ndarray) -> None:
         """Move the point of the frame and of Jp by an arm (3,) that turns with the frame, global [m]."""
         self.arm = arm

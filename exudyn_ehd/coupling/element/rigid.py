@@ -26,7 +26,7 @@ from exudyn_ehd.coupling.element.outer_load import OuterLoad
 from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.relative import eccentricity_ratios
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, derivatives_between, motion_between
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, derivatives_between, motion_between
 from exudyn_ehd.coupling.record.history import make_row
 from exudyn_ehd.joint import step_error
 from exudyn_ehd.joint.model.results import FilmFields
@@ -197,7 +197,8 @@ class FilmElement:
         """Return the indices of the element's coordinates in an assembled system; the first call binds the sides."""
         if self._places is None:
             self.presence.require(mbs)
-            bind(mbs, *self.sides)
+            for side in self.sides:
+                side.bind(mbs)
             places = [place for node in self.nodes for place in mbs.systemData.GetNodeLTGODE2(int(node))]
             self._places = np.array(places, dtype=int)
         return self._places

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicHermiteSpline
 
 from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex
@@ -146,11 +147,14 @@ def beam_side(
     return BeamSide(ends, share, point, rotation)
 
 
-def body_frame(mbs: exu.MainSystem, body: Index, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Position (3,) and rotation (3, 3) of a body in the reference state at local coordinates (3,)."""
-    place = mbs.GetObjectOutputBody(body, exu.OutputVariableType.Position, local.tolist(), REFERENCE)
-    turn = mbs.GetObjectOutputBody(body, exu.OutputVariableType.RotationMatrix, local.tolist(), REFERENCE)
-    return np.array(place), np.array(turn).reshape(3, 3)
+def reference_pose(read: Callable[..., ArrayLike], item: Index, *local: object) -> tuple[np.ndarray, np.ndarray]:
+    """Position (3,) and rotation (3, 3) of an item in the reference state, by Exudyn's function for its outputs.
+
+    ``local``: local coordinates, if the function takes them.
+    """
+    place = np.array(read(item, exu.OutputVariableType.Position, *local, REFERENCE), dtype=float)
+    turn = np.array(read(item, exu.OutputVariableType.RotationMatrix, *local, REFERENCE), dtype=float)
+    return place, turn.reshape(3, 3)
 
 
 def marker_on_body(
@@ -159,7 +163,7 @@ def marker_on_body(
     """Side through a new marker on an ANCF beam element or a RotationalMass1D, at a point of the reference state."""
     local = np.zeros(3)
     for _ in range(50):
-        place, matrix = body_frame(mbs, body, local)
+        place, matrix = reference_pose(mbs.GetObjectOutputBody, body, local.tolist())
         step = matrix.T @ (point - place)
         local += step
         if np.abs(step).max() < 1e-15:
@@ -169,7 +173,8 @@ def marker_on_body(
         half = 0.5 * float(data["length"])
         local[0] = _within(where, local[0] + half, 0.0, 2.0 * half) - half
     marker = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=body, localPosition=local.tolist()))
-    return MarkerSide(marker, list(nodes), body_frame(mbs, body, local)[1].T @ rotation)
+    _, matrix = reference_pose(mbs.GetObjectOutputBody, body, local.tolist())
+    return MarkerSide(marker, list(nodes), matrix.T @ rotation)
 
 
 def marker_on_node(

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, NodeIndex, Side, objects_of
+from exudyn_ehd.coupling.contract import Data, Index, NodeIndex, Side, objects_of
 from exudyn_ehd.coupling.items import beams
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.flexible_bodies import BeamSide
@@ -144,7 +144,7 @@ def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
     if kind in beams.EXACT_BEAMS:
         return beam_item(mbs, where, nodes, float(data["length"]))
     if kind in ("ObjectANCFBeam", "RotationalMass1D", "Mass1D"):
-        position, rotation = beams.body_frame(mbs, body, np.zeros(3))
+        position, rotation = beams.reference_pose(mbs.GetObjectOutputBody, body, [0.0, 0.0, 0.0])
         return Item(
             position=position,
             rotation=rotation,
@@ -189,8 +189,7 @@ def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tupl
 
 def _slope_pair_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
     """Node of an ANCF beam."""
-    place = np.array(mbs.GetNodeOutput(node, exu.OutputVariableType.Position, REFERENCE))
-    frame = np.array(mbs.GetNodeOutput(node, exu.OutputVariableType.RotationMatrix, REFERENCE)).reshape(3, 3)
+    place, frame = beams.reference_pose(mbs.GetNodeOutput, node)
     return Item(
         position=place,
         rotation=frame,

@@ -23,8 +23,8 @@ import exudyn as exu
 import numpy as np
 from exudyn.rigidBodyUtilities import Skew
 
-from exudyn_ehd.coupling.contract import REFERENCE, Data, Index, MarkerIndex, NodeIndex, ObjectIndex, Side
-from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES, element_nodes
+from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, NodeIndex, ObjectIndex, Side
+from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES, element_nodes, reference_pose
 from exudyn_ehd.coupling.items.bodies import (
     MASS_POINTS,
     POINT_KINDS,
@@ -165,11 +165,10 @@ def marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
             f"{where}: a marker of type {data['markerType']} has no orientation; give a rigid marker, e.g. "
             "MarkerBodyRigid or MarkerNodeRigid."
         )
-    reference, output = REFERENCE, exu.OutputVariableType
-    rotation = np.array(mbs.GetMarkerOutput(marker, output.RotationMatrix, reference), dtype=float).reshape(3, 3)
+    position, rotation = reference_pose(mbs.GetMarkerOutput, marker)
     make, nodes = _marker_side(mbs, marker, data)
     return Item(
-        position=np.array(mbs.GetMarkerOutput(marker, output.Position, reference), dtype=float),
+        position=position,
         rotation=rotation,
         is_marker=True,
         kind=None,
@@ -257,16 +256,16 @@ def mesh_item(mbs: exu.MainSystem, where: str, marker: Index, data: Data, body: 
         raise InputError(f"{where}: the nodes of the marker lie on one line and fix no rotation; give more of them.")
     size = 3 * len(nodes)
     places = np.flatnonzero(np.repeat(moving, 3)), np.arange(size)
-    output, configuration = exu.OutputVariableType, REFERENCE
+    position, rotation = reference_pose(mbs.GetMarkerOutput, marker)
     return Item(
-        position=np.array(mbs.GetMarkerOutput(marker, output.Position, configuration), dtype=float),
-        rotation=np.array(mbs.GetMarkerOutput(marker, output.RotationMatrix, configuration)).reshape(3, 3),
+        position=position,
+        rotation=rotation,
         is_marker=True,
         kind=None,
         inner=True,
         marker=marker,
         nodes=nodes,
-        side=lambda point, rotation: FittedSide(list(nodes), size, points, places, weights, point, rotation),
+        side=lambda point, joint: FittedSide(list(nodes), size, points, places, weights, point, joint),
     )
 
 

@@ -28,10 +28,10 @@ from exudyn.lieGroupBasics import ExpSO3, TExpSO3
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.contract import CURRENT, INITIAL, REFERENCE, Index, Side
-from exudyn_ehd.coupling.items.beams import node_coordinates
+from exudyn_ehd.coupling.contract import CURRENT, INITIAL, Index, Side
+from exudyn_ehd.coupling.items.beams import node_coordinates, reference_pose
 from exudyn_ehd.coupling.items.bodies import Item
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide, bind, floating_change, node_side
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide, floating_change, node_side
 from exudyn_ehd.solid.fe_bore import FEBore, FESurface, ReducedBore, bore_faces, find_bore
 from exudyn_ehd.solid.turning_journal import FEJournal, TurningJournal
 from exudyn_ehd.status import SMALL, InputError
@@ -210,7 +210,7 @@ class Carrier:
     def move(self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = CURRENT) -> None:
         """Update frame and Jacobians to the coordinates ``q`` and rates ``q_t`` (n,) of a ``configuration``."""
         if not self._bound:
-            bind(self.mbs, self.side)
+            self.side.bind(self.mbs)
             self._bound = True
         self.side.update(self.mbs, q, q_t, configuration)
 
@@ -282,11 +282,9 @@ def _marker_frame(
     Before Assemble Exudyn knows the reference configuration only: the nodes' reference coordinates are moved and put
     back.
     """
-    output = exu.OutputVariableType
     try:
         _set_reference(mbs, side.nodes, coordinates)
-        place = np.array(mbs.GetMarkerOutput(side.marker, output.Position, REFERENCE))
-        return place, np.array(mbs.GetMarkerOutput(side.marker, output.RotationMatrix, REFERENCE)).reshape(3, 3)
+        return reference_pose(mbs.GetMarkerOutput, side.marker)
     finally:
         _set_reference(mbs, side.nodes, reference)
 

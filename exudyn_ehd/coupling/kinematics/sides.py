@@ -203,13 +203,6 @@ def floating_change(floating: NodeSide, q: np.ndarray, arm: np.ndarray, jac: np.
     return change
 
 
-def bind(mbs: exu.MainSystem, *sides: Side) -> None:
-    """Let sides with Exudyn's markers find their number of coordinates, in an assembled system."""
-    for side in sides:
-        if isinstance(side, MarkerSide):
-            side.bind(mbs)
-
-
 def motion_between(
     mbs: exu.MainSystem,
     sides: tuple[Side, Side],
