@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.compilation import FAST, I1
+from exudyn_ehd.compilation import FAST, I0, I1
 
 
 class FilmTerms(NamedTuple):
@@ -112,12 +112,16 @@ def carried_fill(fill, film):
 
 @njit(cache=True)
 def next_values(x, step):
-    """Return the values of a field at the vertices ``step`` on, flat, those behind the last one at the first ones; None
-    for None."""
+    """Return the values of a flat field at the vertices ``step`` on, those behind the last one at the first ones."""
+    return np.concatenate((x[step:], x[:step]))
+
+
+@njit(cache=True)
+def _next_or_none(x, step):
+    """Return `next_values`; None for None."""
     if x is None:
         return None
-    values = x.reshape(-1)
-    return np.concatenate((values[step:], values[:step]))
+    return next_values(x, step)
 
 
 @njit(cache=True, fastmath=FAST)
@@ -137,8 +141,9 @@ def upstream(fx, fz, fill, rho):
     ``fill``: fill of the flows out of every vertex; ``rho``: density ratio; (n, m) each, or None if 1 everywhere.
     """
     up = np.ones((2, fx.size))
-    for f, step, out in ((fx, fx.shape[1], up[0]), (fz, 1, up[1])):
-        _upstream(f.reshape(-1), flat(fill), next_values(fill, step), flat(rho), next_values(rho, step), out)
+    a, b = flat(fill), flat(rho)
+    for f, step, out in ((fx, fx.shape[1], up[0]), (fz, I1, up[1])):
+        _upstream(f.reshape(-1), a, _next_or_none(a, step), b, _next_or_none(b, step), out)
     return up
 
 
@@ -169,9 +174,9 @@ def film_balance(P, fill, rho, film, out):
     """
     m, size, p = P.shape[1], P.size, P.reshape(-1)
     up, along, across = upstream(film.fx, film.fz, carried_fill(fill, film), rho), np.empty(size), np.empty(size)
-    _link_flows(film.kx.reshape(-1), film.fx.reshape(-1), p, next_values(P, m), up[0], along)
+    _link_flows(film.kx.reshape(-1), film.fx.reshape(-1), p, next_values(p, m), up[0], along)
     # nothing flows over the last row's links in z
-    _link_flows(film.kz.reshape(-1), film.fz.reshape(-1), p, next_values(P, 1), up[1], across)
+    _link_flows(film.kz.reshape(-1), film.fz.reshape(-1), p, next_values(p, I1), up[1], across)
     area, grow, known, kept = (
         film.area.reshape(-1),
         film.grow.reshape(-1),
@@ -295,5 +300,6 @@ def link_derivatives(P, H, HF, E, up, laws, metric, vx, vz, by, by_speed):
     m, p, h, h_x, width = P.shape[1], P.reshape(-1), H.reshape(-1), HF.reshape(-1), metric.reshape(4, P.size)
     by_speed[2] = 0.0
     out = by, by_speed
-    _derive_links(0, p, next_values(P, m), h_x, h_x, flat(E), next_values(E, m), laws, up, width, vx, *out)
-    _derive_links(1, p, next_values(P, 1), h, next_values(H, 1), flat(E), next_values(E, 1), laws, up, width, vz, *out)
+    E, h_on = flat(E), next_values(h, I1)
+    _derive_links(I0, p, next_values(p, m), h_x, h_x, E, _next_or_none(E, m), laws, up, width, vx, *out)
+    _derive_links(I1, p, next_values(p, I1), h, h_on, E, _next_or_none(E, I1), laws, up, width, vz, *out)

@@ -48,7 +48,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.compilation import FAST, U0, U1, unsigned
+from exudyn_ehd.compilation import FAST, I0, I1, U0, U1, unsigned
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.balance import next_values
 
@@ -265,8 +265,9 @@ def set_links(H, HF, flow, metric, vx, vz, terms):
     ``flow``: `LinkFlux.flow`, None for a plain film; ``metric``: `link_metric`.
     """
     by, out = metric.reshape(4, H.size), terms.reshape(len(terms), H.size)
-    _set_along(0, HF.reshape(-1), HF.reshape(-1), flow, by, vx, out)
-    _set_along(1, H.reshape(-1), next_values(H, 1), flow, by, vz, out)
+    h, h_x = H.reshape(-1), HF.reshape(-1)
+    _set_along(I0, h_x, h_x, flow, by, vx, out)
+    _set_along(I1, h, next_values(h, I1), flow, by, vz, out)
 
 
 @njit(cache=True, fastmath=FAST)
