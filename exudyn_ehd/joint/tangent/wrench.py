@@ -23,8 +23,8 @@ from exudyn_ehd.film.solvers.liner import LinerFilm
 from exudyn_ehd.film.solvers.sor import ClassicSolver
 from exudyn_ehd.film.surfaces import roughness
 from exudyn_ehd.film.surfaces.contact import contact_tangent, contact_weights
+from exudyn_ehd.joint.plain_film import has_plain_tangent, plain_tangent
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
 
 
 def wrench_tangent(film: SolvedFilm, slow_motion: bool = False) -> np.ndarray:
@@ -33,7 +33,7 @@ def wrench_tangent(film: SolvedFilm, slow_motion: bool = False) -> np.ndarray:
     With ``slow_motion`` the columns of the rates include the squeeze by a liner whose deflection follows a slow motion,
     ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state.
     """
-    if is_plain(film):
+    if has_plain_tangent(film):
         return plain_tangent(film)
     rows = adjoint_rows(film)
     if len(rows) <= 7:

@@ -5,8 +5,8 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.plain_film import has_plain_tangent
 from exudyn_ehd.joint.tangent import wrench
-from exudyn_ehd.joint.tangent.plain import is_plain
 
 GRID = ehd.FiniteLength(n_theta=48, n_z=6)
 GROOVE = ehd.AxialGroove(angle=1.0, width_angle=0.3, pressure=2e5)
@@ -57,11 +57,11 @@ def test_same_as_for_any_film(make_bearing, name, monkeypatch):
         evaluation = model.evaluate(motion, spin=0.3 * seen)
         if evaluation.film is None:
             continue
-        assert is_plain(evaluation.film) is (name != "long")
+        assert has_plain_tangent(evaluation.film) is (name != "long")
         seen += 1
         plain = evaluation.tangent()
         with monkeypatch.context() as patch:
-            patch.setattr(wrench, "is_plain", lambda film: False)
+            patch.setattr(wrench, "has_plain_tangent", lambda film: False)
             patient = evaluation.tangent()
         assert plain == pytest.approx(patient, rel=1e-12, abs=1e-14 * abs(patient).max())
     assert seen > 10
@@ -71,4 +71,4 @@ def test_same_as_for_any_film(make_bearing, name, monkeypatch):
 def test_others_take_the_long_way(make_bearing, name):
     model = build_model(make_bearing(1.0, **({"film": GRID} | OTHERS[name])))
     motion = np.array([12e-6, 16e-6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 100.0, 0.0])
-    assert not is_plain(model.evaluate(motion, model.initial_history(motion), 1e-4).film)
+    assert not has_plain_tangent(model.evaluate(motion, model.initial_history(motion), 1e-4).film)
