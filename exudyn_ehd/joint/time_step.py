@@ -269,3 +269,21 @@ def resists(matrix: np.ndarray) -> np.ndarray:
 def _times(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:
     """Products of matrices (n, k, k) and vectors (n, k)."""
     return (matrix @ vector[:, :, None])[:, :, 0]
+
+
+def part_that_closes(share: float, before: np.ndarray, after: np.ndarray, clearance: float, length: float) -> float:
+    """Part of a step between two motions that closes a share of the smallest gap of rigid surfaces; at most 1.
+
+    The ends of the journal's axis are at p and move by d, and the smallest gap is g = c - max |p|. The part is the
+    largest s with ``|p + s d| <= c - (1 - share) g`` at both ends.
+    """
+    (x, y, bx, by), (to_x, to_y, to_bx, to_by), part = before[:4].tolist(), after[:4].tolist(), 1.0
+    ends = [(x + z * bx, y + z * by, to_x + z * to_bx, to_y + z * to_by) for z in (-0.5 * length, 0.5 * length)]
+    farthest = clearance - (1.0 - share) * (clearance - max(math.hypot(px, py) for px, py, _, _ in ends))
+    for px, py, to_px, to_py in ends:
+        dx, dy = to_px - px, to_py - py
+        along, square, rest = px * dx + py * dy, dx * dx + dy * dy, farthest**2 - px * px - py * py
+        # the comparison is False for numbers that are not finite; a gap that is closed limits nothing
+        if 2.0 * along + square > rest >= 0.0:
+            part = min(part, (math.sqrt(along * along + square * rest) - along) / square)
+    return part

@@ -124,8 +124,9 @@ def SolveEquilibrium(
         For systems outside the theory: rotors that are not the same in all directions, bodies that nothing holds, other
         kinds of films or bodies.
     FilmError
-        If no equilibrium was found at a speed; or if one is at the exact centre of a bearing with supply areas at the
-        cavity pressure, where stiffness and damping are not defined.
+        If no equilibrium was found at a speed; if a film there is too hot for any oil or outside the oil's table; or if
+        one is at the exact centre of a bearing with supply areas at the cavity pressure, where stiffness and damping
+        are not defined.
 
     Examples
     --------

@@ -17,7 +17,7 @@ from exudyn_ehd.coupling.rotor.system import HeldBore, SpinningSystem, TurningNo
 from exudyn_ehd.coupling.run.joint_state import Joint
 from exudyn_ehd.coupling.run.newton import SHARE
 from exudyn_ehd.joint.audit.resolution import warn_of_grid
-from exudyn_ehd.joint.balance.limits import warn_of_overload
+from exudyn_ehd.joint.balance.limits import require_bearable, warn_of_heat, warn_of_overload
 from exudyn_ehd.joint.balance.newton import (
     FREE_STEP,
     ROOM,
@@ -107,7 +107,8 @@ class RotorFilm:
         self.faces, self.kinematics, self._place = joint.element.faces, joint.element.collars, np.zeros(11)
         self._on_faces: ThrustEvaluation | None = None
         self._near: History | None = None
-        self._told = False
+        # whether warnings have been given
+        self._hot = self._coarse = False
 
     def update(self, q: np.ndarray, u: np.ndarray) -> None:
         """Update the journal's motion to a state."""
@@ -229,7 +230,10 @@ class RotorFilm:
             require_derivatives(evaluation, where)
         loads = known["minimum_gap"], known["peak_pressure"], float(np.hypot(*force))
         warn_of_overload(self.bearing, *loads, where)
-        self._told = self._told or (evaluation.film is not None and warn_of_grid(evaluation.film, where))
+        if (film := evaluation.film) is not None:
+            require_bearable(film, where)
+            self._hot = self._hot or warn_of_heat(film.temperature, film.grid, where)
+            self._coarse = self._coarse or warn_of_grid(film, where)
         angle = math.atan2(self.motion[1], self.motion[0]) - math.atan2(-force[1], -force[0])
         rows = np.zeros((2, self.size))
         rows[:, self.places] = self.by_place[:2]

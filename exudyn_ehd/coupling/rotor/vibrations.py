@@ -93,9 +93,12 @@ def _refined(
             if not error > TOLERANCE:
                 return s, y / np.linalg.norm(y)
             slope = (terms(s * (1.0 + TOLERANCE)) - T).sum(axis=0) / (TOLERANCE * s)
-            x = np.linalg.solve(T.sum(axis=0), slope @ y)
-        except (RuntimeError, np.linalg.LinAlgError):  # at a motion of the film alone
+        except RuntimeError:  # at a motion of the film alone
             break
+        try:
+            x = np.linalg.solve(T.sum(axis=0), slope @ y)
+        except np.linalg.LinAlgError:  # the eigenvalue is exact
+            return s, np.linalg.svd(T.sum(axis=0))[2][-1].conj()
         change = y[largest := np.argmax(np.abs(y))] / x[largest]
         if error > NEAR or not abs(change) < NEAR * abs(s):
             break

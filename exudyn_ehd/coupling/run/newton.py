@@ -83,8 +83,8 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.bush_equations import BushEquations
 from exudyn_ehd.coupling.items.objects import force_owner
 from exudyn_ehd.coupling.kinematics.relative import BoreGap, levers_of
-from exudyn_ehd.joint.balance.newton import part_that_closes
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
+from exudyn_ehd.joint.time_step import part_that_closes
 from exudyn_ehd.status import SMALL, Status
 
 _UserFunction: TypeAlias = Callable[..., Any]

@@ -138,6 +138,13 @@ def outside_table(film: object) -> str:
     )
 
 
+def require_bearable(film: SolvedFilm, where: str) -> None:
+    """Raise `FilmError` for a film too hot for any oil or outside the oil's table, or without a clearance by growth."""
+    require_oil_bears(film.temperature, film.grid, where)
+    if message := seized(film.walls) or outside_table(film):
+        raise FilmError(f"{where}: {message}")
+
+
 def warn_of_heat(temperature: Temperature, grid: FilmGrid, where: str) -> bool:
     """Warn in the name of ``where`` of a film hotter than `HOT`; return whether it is."""
     if temperature is None or not is_above(HOT, temperature):

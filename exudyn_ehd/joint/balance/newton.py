@@ -17,6 +17,9 @@ increases it is rejected and r is made larger. Damped steps are slow but reliabl
 film that starves or touches, and where a film without a cavity moves the journal across the load. Without a resistance,
 a step that leads to no film is halved.
 
+A search for a temperature field begins with a transport along theta of first order. The limiter of the second order
+depends on the temperature itself and leads searches from a cold film astray. It is used as soon as the search is near.
+
 Free coordinates are x and y, and the place z along the axis if films on the end faces carry an axial load.
 
 `evaluate_at` finds the steady film at a prescribed motion of the journal, with its temperature and oil content.
@@ -30,11 +33,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.linalg import norm
 
-from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, outside_table, require_oil_bears, seized
+from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, require_bearable, require_oil_bears
 from exudyn_ehd.joint.bore.equilibrium import HALVINGS, MOST_FILMS, SETTLED
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, seen_by_faces
+from exudyn_ehd.joint.time_step import part_that_closes
 from exudyn_ehd.status import ROUNDING, SMALL, FilmError, Status
 
 # Tolerance of the unbalance, as a share of the load. A temperature's change, as a share of the film's rise over its
@@ -49,7 +53,7 @@ WEAKEST = 0.1
 # the one below which Anderson's acceleration is used.
 LARGEST_CHANGE, ACCELERATED = 50.0, 5.0
 # Largest number of differences of past rounds that Anderson's acceleration combines.
-DEPTH = 10
+DEPTH = 20
 # Temperature in K above which a search fails. It is far above `HOTTEST`, because films during a search may be hotter
 # than the solution.
 DIVERGED = 2000.0
@@ -112,6 +116,8 @@ class Balance:
         Share of the load in the present search; below 1 in a continuation from smaller loads.
     count : int
         Number of films evaluated.
+    rough : bool
+        Whether the temperature is transported along theta with first order.
     """
 
     def __init__(
@@ -130,10 +136,11 @@ class Balance:
         self.size = float(norm(self.load[:2])) if size is None else size
         self._sizes = np.array([self.size, self.size, *np.hypot(self.size, self.load[2:])])[: self.load.size]
         self.thermal = model.effects.thermal if held is None else None
-        cold = np.zeros(0) if self.thermal is None else self.thermal.initial_temperature(model.grid.shape)
+        cold = np.zeros(0) if self.thermal is None else self.thermal.initial_temperature()
         self.cold = np.asarray(cold, dtype=float)
         self.count, self.first = 0, model.parts.evaluations
         self.strongest = (0.0, 0.0)
+        self.rough = False
 
     def temperature_of(self, near: History | None) -> np.ndarray:
         """Initial guess of the temperature, K: that of the memory ``near``, else that of the thermal option."""
@@ -156,7 +163,9 @@ class Balance:
             film = evaluation.heat_with(beside.heat) or film
         thinner, change = 1.0, np.zeros(0)
         if thermal is not None:
+            thermal.upwind = self.rough
             change = thermal.steady_temperature(film) - T
+            thermal.upwind = False
             size = float(np.abs(change).max())
             if not size < math.inf:
                 raise FilmError(f"{self.where}: the film is heated, and its heat has no way out; {WAY_OUT}")
@@ -186,6 +195,10 @@ class Balance:
         """The larger of the residual and of the temperature's change over `LARGEST_CHANGE`."""
         return max(self.residual(place), float(np.abs(place.change).max(initial=0.0)) / LARGEST_CHANGE)
 
+    def is_near(self, place: Place) -> bool:
+        """Return whether a search is so near to its end that Anderson's acceleration helps."""
+        return self.residual(place) < 1.0 and float(np.abs(place.change).max(initial=0.0)) < ACCELERATED
+
     def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = ROUNDING) -> bool:
         """Return whether the residual is below a tolerance, and the change of the temperature negligible."""
         T, change = place.temperature, place.change
@@ -213,10 +226,15 @@ class Balance:
         FilmError
             If there is no film at the initial guess; under a load, none at smaller eccentricities either.
         """
+        self.rough = self.cold.ndim > 1
         here = self._first(motion, temperature)
         past: list[tuple[np.ndarray, np.ndarray]] = []
         best, smallest, idle, part, damping, highest = here, self.error(here), 0, 1.0, 1.0, 1e12 * resistance
         for _ in range(rounds):
+            if self.rough and self.is_near(here):
+                self.rough = False
+                best = here = self.at(here.motion, here.temperature)
+                past, smallest = [], self.error(here)
             spent = self.model.parts.evaluations - self.first > MOST_FILMS
             if self.is_balanced(here, tolerance, SETTLED) or spent:
                 break
@@ -242,7 +260,8 @@ class Balance:
             idle = 0 if self.error(here) <= FALLS * smallest else idle + 1
             if self.error(here) < smallest:
                 best, smallest = here, self.error(here)
-        if here.film.serial != self.model.parts.evaluations:
+        if self.rough or here.film.serial != self.model.parts.evaluations:
+            self.rough = False
             here = self.at(here.motion, here.temperature)
         return here
 
@@ -311,24 +330,6 @@ def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> n
         return step * room_between_lobes(model, motion, np.append(step, (0.0, 0.0)))
     after = np.concatenate((motion[:2] + step, motion[2:4]))
     return step * part_that_closes(ROOM, motion, after, c, model.bearing.length)
-
-
-def part_that_closes(share: float, before: np.ndarray, after: np.ndarray, clearance: float, length: float) -> float:
-    """Part of a step between two motions that closes a share of the smallest gap of rigid surfaces; at most 1.
-
-    The ends of the journal's axis are at p and move by d, and the smallest gap is g = c - max |p|. The part is the
-    largest s with ``|p + s d| <= c - (1 - share) g`` at both ends.
-    """
-    (x, y, bx, by), (to_x, to_y, to_bx, to_by), part = before[:4].tolist(), after[:4].tolist(), 1.0
-    ends = [(x + z * bx, y + z * by, to_x + z * to_bx, to_y + z * to_by) for z in (-0.5 * length, 0.5 * length)]
-    farthest = clearance - (1.0 - share) * (clearance - max(math.hypot(px, py) for px, py, _, _ in ends))
-    for px, py, to_px, to_py in ends:
-        dx, dy = to_px - px, to_py - py
-        along, square, rest = px * dx + py * dy, dx * dx + dy * dy, farthest**2 - px * px - py * py
-        # the comparison is False for numbers that are not finite; a gap that is closed limits nothing
-        if 2.0 * along + square > rest >= 0.0:
-            part = min(part, (math.sqrt(along * along + square * rest) - along) / square)
-    return part
 
 
 def room_between_lobes(model: BearingModel, motion: np.ndarray, change: np.ndarray) -> float:
@@ -424,7 +425,5 @@ def evaluate_at(
     """
     balance = Balance(model, where, faces=faces, held=history_at(model, motion, where, near, faces))
     found = balance.at(motion, balance.cold)
-    require_oil_bears(found.film.temperature, model.grid, where)
-    if message := seized(found.film.walls) or outside_table(found.film):
-        raise FilmError(f"{where}: {message}")
+    require_bearable(found.film, where)
     return found

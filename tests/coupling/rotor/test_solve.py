@@ -476,3 +476,17 @@ def test_a_light_rotor_far_from_the_origin_is_found():
         mbs.Assemble()
         places.append(ehd.SolveEquilibrium(mbs, SPEED).motion[0, :, :2])
     np.testing.assert_allclose(places[1], places[0], rtol=0.0, atol=1e-6 * CLEARANCE)
+
+
+def test_films_beyond_their_oil_are_told():
+    """Outside the table an error, above 150 degrees Celsius a warning, as by `equilibrium`."""
+
+    def rotor(law, supply):
+        oil, heat = ehd.Lubricant(temperature_law=law), ehd.LumpedThermal(supply_temperature=supply)
+        return ehd.SolveEquilibrium(shaft(film=bearing(lubricant=oil, thermal=heat))[0], [SPEED])
+
+    table = ehd.TableViscosity(temperatures=(300.0, 330.0, 341.0), viscosities=(0.06, 0.02, 0.015))
+    with pytest.raises(ehd.FilmError, match=r"SolveEquilibrium, joint '.*': the film's temperatures .* 300 to 341 K"):
+        rotor(table, 340.0)
+    with pytest.warns(ehd.HotFilmWarning, match="SolveEquilibrium, joint"):
+        rotor(ehd.WaltherTemperature(first=(313.15, 46e-6), second=(373.15, 7e-6)), 423.0)
