@@ -168,6 +168,8 @@ class Joint:
         - at any other state: the film of the last end, with a `MemoryWarning`.
         """
         self.element.steps.forget()
+        if (recorder := self.element.steps.recorder) is not None:
+            recorder.begin_anew()
 
     def stop_at(self, *, force: float = math.inf, pressure: float = HIGHEST_PEAK) -> None:
         """End runs with a `FilmError` at the first accepted step whose film exceeds a limit of yours.

@@ -56,6 +56,16 @@ def test_films_of_a_run_are_none_of_a_state_that_was_changed_since():
             read()
 
 
+def test_forget_drops_the_films_of_earlier_runs():
+    mbs, joint = rotor()
+    joint.record_films(period=5e-4)
+    mbs.Assemble()
+    run(mbs)
+    assert len(joint.films) == 5
+    joint.forget()
+    assert len(joint.films) <= 1
+
+
 def test_recording_changes_no_bit_of_the_run(recorded):
     mbs, joint = rotor()
     mbs.Assemble()
