@@ -52,7 +52,7 @@ SLOWEST, STEPS = 0.05, 24
 # of the critical mass of soft bushes 2e-9, of Z from 0 to 4 times the spin 5e-7.
 SAMPLES = (0.0, 0.2, 0.5, 1.0, 2.0)
 # Complex frequencies over the speed, with arguments of 0, 25 and 50 degrees (decaying motions), at which the responses
-# for `FilmResponse.linear` are computed. Error of Z: 1e-9 for motions of up to 15 oscillations per turn, and for
+# for `FilmResponse.linear` are computed. Error of Z: 2e-7 for motions of up to 15 oscillations per turn, and for
 # motions that decay far faster.
 RAYS = np.outer((0.1, 0.4, 1.0, 2.5, 6.0, 15.0, 60.0, 300.0), np.exp(1j * np.radians((0.0, 25.0, 50.0)))).ravel()
 # Map (4, 6) from a wrench to the loads that do work on a journal's coordinates x, y, bx, by: F_x, F_y, M_y, -M_x.
