@@ -66,6 +66,11 @@ class History:
     temperature : float, (n, m) array or None
         Film temperature, K; (n, m + k) followed by those of conducting walls, see `exudyn_ehd.joint.heat.walls`;
         (n, 4 m + k) with two temperatures across the film, see `exudyn_ehd.joint.heat.across`.
+    heating : (2, k, ...) array or None
+        Mean rates of the temperature in the last step, K/s, as those of k fields across the film; and the same where
+        the rate of the first field had this sign in the step before too, else 0.
+    last_step : float
+        Size of that step, s; 0 at the start of a motion.
     deflection : (n, m) array or None
         Scaled deflection of an elastic liner.
     pockets : (k,) array or None
@@ -82,6 +87,8 @@ class History:
     outflow: np.ndarray | None = None
     wear: np.ndarray | None = None
     temperature: float | np.ndarray | None = None
+    heating: np.ndarray | None = None
+    last_step: float = 0.0
     deflection: np.ndarray | None = None
     pockets: np.ndarray | None = None
     sump: float | None = None

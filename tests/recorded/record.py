@@ -52,8 +52,10 @@ QUANTITIES = (
     "stored_power",
     "supply_flow",
 )
-# of a film's memory; no bearing here has pockets behind restrictors, or a sump
-FIELDS = tuple(f.name for f in dataclasses.fields(History) if f.name not in ("pockets", "sump", "leaving"))
+# of a film's memory; no bearing here has pockets behind restrictors, or a sump, and the temperatures of the next step
+# show those of the last one's change
+_OTHERS = ("pockets", "sump", "leaving", "heating", "last_step")
+FIELDS = tuple(f.name for f in dataclasses.fields(History) if f.name not in _OTHERS)
 LOADS = tuple(f"force {x}" for x in "xyz") + tuple(f"moment {x}" for x in "xyz") + ("load 1", "load 2")
 COLUMNS = (
     ("status",)

@@ -10,18 +10,21 @@ T times the balance of mass is
     A m* (T - T_old)/dt + sum over inflows F (T - T_link) + sum over outflows F (T_link - T)
         + S+ (T - T_source) + A walls (T - T_wall) = heat,
 
-m* = m' + (dt / 2) dh/dt with m' = m - dt dm/dt. The rate dm/dt comes from the gap's rate, so that m' is not the content
-m_old of the previous step but ``m_old - (dt^2 / 2) d2h/dt2``. With m* the storage of a step is
+With backward Euler m* = m' + (dt / 2) dh/dt, m' = m - dt dm/dt. The rate dm/dt comes from the gap's rate, so that m' is
+not the content m_old of the previous step but ``m_old - (dt^2 / 2) d2h/dt2``. With m* the storage of a step is
 
     m* (T - T_old) + dt T dm/dt = m T - m_old T_old + (dt^2 / 2) d(T dh/dt)/dt,
 
 whose sum over a periodic cycle is zero. With m' or m in place of m* an error of up to 2 % of the power loss would
-remain, for 64 steps a turn.
+remain, for 64 steps a turn. With backward differences of second order (`exudyn_ehd.joint.heat.temperature`) the sum is
+zero to second order with the gap at the end of the step and the mean void of the step: m* = m' + (dt / 2) (dh/dt +
+dm/dt).
 
-In theta T_link is the temperature upstream, which is of first order. In z that would be too inaccurate: hot oil that
-turns with the journal is next to cold oil that enters at the ends, and the error would be as large as the heat that the
-bearing gives off. So T_link is of second order in z, with a limiter that makes no extrema. The heat that leaves one
-vertex over a link enters the other one, so that the heat balance holds.
+With the temperature upstream as T_link the transport would be of first order. That is too inaccurate where hot oil
+turns past cold oil that enters at the ends, and where the hot side of the film moves: with a load that turns with the
+oil, the smallest gap on 64 columns would be 2.6 times that on 256. So T_link is of second order, with a limiter that
+makes no extrema along a row or a column. The heat that leaves one vertex over a link enters the other one, so that the
+heat balance holds.
 
 Heat from a film's mean temperature through both of its surfaces
 ----------------------------------------------------------------
@@ -177,13 +180,13 @@ def outside_flows(qz: np.ndarray, balance: np.ndarray, fixed: np.ndarray, unbrok
 
 
 @njit(cache=True)
-def transport_slopes(qx, qz, diagonal, T, link_z, held, slopes_out):
+def transport_slopes(qx, qz, diagonal, T, links, held, slopes_out):
     """Derivatives (5, n m) of the energy equation's system, in the layout of `exudyn_ehd.film.banded.workspace`.
 
-    The heat over a link is its flow times the temperature upstream plus, in z, a share of the difference to the
-    temperature downstream. T times the balance of mass is subtracted from the balance of energy: the net outflow of a
-    vertex is therefore subtracted from ``diagonal`` (n, m), which holds all other terms of its own temperature. ``qz``
-    is zero in the last column, where there is no link.
+    The heat over a link is its flow times the temperature upstream plus a share of the difference to the temperature
+    downstream. T times the balance of mass is subtracted from the balance of energy: the net outflow of a vertex is
+    therefore subtracted from ``diagonal`` (n, m), which holds all other terms of its own temperature. ``qz`` is zero in
+    the last column, where there is no link. ``links``: inverse lengths (n,) and (m,) of the links in theta and z.
 
     A limiter gives the shares from the temperatures ``T`` (n, m) at the start of a step. With shares up to a half the
     solution does not grow. The storage term ``held`` (n, m) upstream limits the flow that a share multiplies. Without
@@ -194,28 +197,47 @@ def transport_slopes(qx, qz, diagonal, T, link_z, held, slopes_out):
         prv = i - 1 if i > 0 else n - 1
         for j in range(m):
             k = i * m + j
-            at = j + 1 if qz[i, j] < 0.0 else j
-            share = downstream_weight(T[i], link_z, j, qz[i, j]) * min(abs(qz[i, j]), held[i, at])
-            slopes_out[0, k], slopes_out[1, k] = max(qx[i, j], 0.0), min(qx[i, j], 0.0)
-            slopes_out[2, k], slopes_out[3, k] = max(qz[i, j], 0.0) - share, min(qz[i, j], 0.0) + share
+            x, z = qx[i, j], qz[i, j]
+            share_x = weight_along(T[:, j], links[0], i, x) * min(abs(x), held[(i + 1) % n if x < 0.0 else i, j])
+            share_z = weight_across(T[i], links[1], j, z) * min(abs(z), held[i, j + 1 if z < 0.0 else j])
+            slopes_out[0, k], slopes_out[1, k] = max(x, 0.0) - share_x, min(x, 0.0) + share_x
+            slopes_out[2, k], slopes_out[3, k] = max(z, 0.0) - share_z, min(z, 0.0) + share_z
             into = qx[prv, j] + (qz[i, j - 1] if j > 0 else 0.0)
-            slopes_out[4, k] = diagonal[i, j] - (qx[i, j] + qz[i, j] - into)
+            slopes_out[4, k] = diagonal[i, j] - (x + z - into)
 
 
 @njit(cache=True, inline="always")
-def downstream_weight(T, link_z, j, flow):
-    """Weight of the temperature downstream on the link j -> j+1.
+def weight_along(T, link_x, i, flow):
+    """Return `downstream_weight` on the link i -> i+1 in theta, for the temperatures T (n,) of a row.
 
-    With the ratio r of the slope upstream of the link to the slope on it, the weight is a half for r >= 1 and
+    It is zero if the link upstream does not exist.
+    """
+    n = len(T)
+    up = (i - 1 if flow > 0.0 else i + 1) % n
+    own, before = (T[(i + 1) % n] - T[i]) * link_x[i], (T[(up + 1) % n] - T[up]) * link_x[up]
+    return downstream_weight(own, before)
+
+
+@njit(cache=True, inline="always")
+def weight_across(T, link_z, j, flow):
+    """Return `downstream_weight` on the link j -> j+1 in z, for the temperatures T (m,) of a column."""
+    up, weight = j - 1 if flow > 0.0 else j + 1, 0.0
+    if flow != 0.0 and 0 <= up < len(T) - 1:
+        weight = downstream_weight((T[j + 1] - T[j]) * link_z[j], (T[up + 1] - T[up]) * link_z[up])
+    return weight
+
+
+@njit(cache=True, inline="always")
+def downstream_weight(own, before):
+    """Weight of the temperature downstream of a link, from the slopes on the link and on the one upstream.
+
+    With the ratio r of the slope upstream to the slope on the link, the weight is a half for r >= 1 and
     ``2 r / (1 + r)^2`` for a smaller r, with a continuous slope at r = 1. It is zero at extrema and if the link
     upstream would lie outside the film.
     """
-    up = j - 1 if flow > 0.0 else j + 1
     weight = 0.0
-    if flow != 0.0 and 0 <= up < len(T) - 1:
-        own, before = (T[j + 1] - T[j]) * link_z[j], (T[up + 1] - T[up]) * link_z[up]
-        if own * before > 0.0:
-            weight = 0.5 if abs(before) >= abs(own) else 2.0 * own * before / (own + before) ** 2
+    if own * before > 0.0:
+        weight = 0.5 if abs(before) >= abs(own) else 2.0 * own * before / (own + before) ** 2
     return weight
 
 

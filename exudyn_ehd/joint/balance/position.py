@@ -157,7 +157,7 @@ class LoadSearch(Balance):
                 "direction, plane faces no steady load: give them pads that carry (profile=TaperLand(...)), "
                 "contact=RegularisedWall(onset=...), or less load."
             )
-        if (left := self.residual(place)) <= self.tolerance(place.motion):
+        if (left := self.residual(place)) <= SMALL and place.change.size:
             return FilmError(
                 f"{self.where}: at eccentricity ratio {ratio:.4f} the film carries the load, but its heat finds no "
                 f"balance at a temperature that oil bears: it has reached "

@@ -44,14 +44,16 @@ from exudyn_ehd.film.heat.energy import (
     ViscosityField,
     at_points,
     cubic_at,
-    downstream_weight,
     film_heat,
     passed,
+    weight_across,
+    weight_along,
 )
 from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.film.reynolds.links import LinkFlux, drops, to_ends
+from exudyn_ehd.joint.heat.equations import MIXED, STAGNANT, HeatBalance, linear
 from exudyn_ehd.joint.heat.power import conductances_of, dropped, sheared
-from exudyn_ehd.joint.heat.temperature import MIXED, STAGNANT, HeatBalance, linear
+from exudyn_ehd.joint.heat.temperature import Field
 from exudyn_ehd.joint.heat.walls import FilmTemperature
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
@@ -194,7 +196,7 @@ def carry(axis, driven, sliding, shapes, at, limiter, ends_out, below_out, conte
     at : (n, m, 5, 4) array
         See `at_heights`.
     limiter : three arrays
-        `start_heights`, and ``link_z`` and ``held`` as in `exudyn_ehd.film.heat.energy.transport_slopes`. Here the
+        `start_heights`, and ``links`` and ``held`` as in `exudyn_ehd.film.heat.energy.transport_slopes`. Here the
         limiter of that function acts at every height.
     ends_out : (2, 2, n, m, 4) array
         Coefficients of the heat and tilt that leave over the link: of the temperatures at its first vertex, and at its
@@ -203,7 +205,7 @@ def carry(axis, driven, sliding, shapes, at, limiter, ends_out, below_out, conte
         Inflow of oil into a vertex below the heights, and over the whole height.
     """
     slides, pressed, slides_below, pressed_below = shapes
-    T, link_z, held = limiter
+    T, links, held = limiter
     n, m, heights = slides.shape
     for i in range(n):
         for j in range(m - axis):
@@ -216,9 +218,13 @@ def carry(axis, driven, sliding, shapes, at, limiter, ends_out, below_out, conte
                 below_out[i, j, g] -= passed
                 below_out[a, b, g] += passed
                 F, share = s * slides[i, j, g] + p * pressed[i, j, g], 0.0
-                if axis == 1 and F != 0.0:
-                    store = held[i, j + 1 if F < 0.0 else j]
-                    share = downstream_weight(T[i, g], link_z, j, F) * min(1.0, store / abs(F))
+                if F != 0.0:
+                    weight = (
+                        weight_along(T[:, g, j], links[0], i, F)
+                        if axis == 0
+                        else weight_across(T[i, g], links[1], j, F)
+                    )
+                    share = weight * min(1.0, (held[i, j] if F > 0.0 else held[a, b]) / abs(F))
                 own = (1.0 - share if F > 0.0 else share) * F
                 for r in range(2):
                     for c in range(4):
@@ -277,7 +283,7 @@ class PairBalance(HeatBalance):
         self.surface, self.through, lost = surfaces(kappa, area, outward)
         self.own, across = lost / self.scale, film.walls.across
         largest_lost = float(np.abs(self.own).max())
-        self._carry(thermal.fluidity, np.array([self.old, *across]))
+        self._carry(thermal.fluidity, np.array([self.felt, *across]))
         kept = self.store + STAGNANT * self.largest
         self.own[0, ..., 0] += kept + self.follows
         self.own[1, ..., 1] += kept / 3.0
@@ -285,16 +291,16 @@ class PairBalance(HeatBalance):
             areas = np.logical_or.reduce(film.parts.mixing)
             self.own[1, ..., 1] += areas * MIXED * (self.largest + largest_lost)
         self.given = np.array([self.heat, thermal.heat_tilt(film)]) / self.scale
-        self.given[0] += (kept + self.follows) * (self.old - self.supply)
-        self.given[1] += kept / 3.0 * across[0]
+        self.given[0] += kept * (self.begin[0] - self.supply) + self.follows * (self.felt - self.supply)
+        self.given[1] += kept / 3.0 * self.begin[1]
         band_of_pairs(self.ends, self.own, self.band.number, self.band.lower, self.band.upper)
 
-    def _carry(self, field: FluidityField, old: np.ndarray) -> None:
-        """Add the heat that flows carry; the limiter takes the start-of-step temperatures ``old`` (4, n, m)."""
+    def _carry(self, field: FluidityField, felt: np.ndarray) -> None:
+        """Add the heat that flows carry; the limiter takes the film's extrapolated temperatures ``felt`` (4, n, m)."""
         film, flows = self.film, self.flows
         q, (kx, kz) = film.solver.system.flow_pressure, conductances_of(film)
         at, own = at_heights(self.surface), flow_shapes(field.vertices)
-        limiter = start_heights(old), film.grid.link_z, self.held
+        limiter = start_heights(felt), self.links(), self.held
         made = flows.found - flows.lost
         below = flows.outside[..., None] * own.pressed_below + made[..., None] * own.slides_below
         content, ends = flows.outside + made, np.zeros((2, 2, *self.own.shape))
@@ -341,16 +347,16 @@ class CubicTemperature(FilmTemperature):
         super().__init__(spec, bearing, field, shape)
         self.fluidity = field
 
-    def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
+    def initial_temperature(self) -> np.ndarray:
         """Initial state (n, 4 m + k), K: one temperature in the film, those of the walls at the surfaces."""
-        start, m = super().initial_temperature(shape), shape[1]
+        start, m = super().initial_temperature(), self.shape[1]
         for at, wall in zip((2 * m, 3 * m), self.sides, strict=True):
             start[:, at : at + m] = self.initial if wall is None else wall.initial
         return start
 
     def heights(self, state: np.ndarray) -> np.ndarray:
         """Temperatures (n, m, 4) that set the viscosity, at Lobatto's points."""
-        return at_points(self._blocks(state))
+        return at_points(self.across(state))
 
     def heat_tilt(self, film: SolvedFilm) -> np.ndarray:
         """Return the P_1 component of the heat at the vertices, W (n, m); contacts heat evenly over the height."""
@@ -365,15 +371,19 @@ class CubicTemperature(FilmTemperature):
         """Return the equations of a solved film over a step, see `FilmTemperature.equations`."""
         return PairBalance(self, film, step, self.passage(film), self.band, supply)
 
-    def _blocks(self, state: np.ndarray) -> np.ndarray:
-        """Mean, tilt and both surfaces (4, n, m) of a state."""
+    def across(self, temperature: Field) -> np.ndarray:
+        """Mean, tilt and both surfaces (4, n, m) in a state, K."""
         n, m = self.shape
-        out = state[:, : 4 * m].reshape(n, 4, m).transpose(1, 0, 2).copy()
+        out = np.asarray(temperature)[:, : 4 * m].reshape(n, 4, m).transpose(1, 0, 2).copy()
         out[1] -= out[0]
         return out
 
-    def _across(self, state: np.ndarray) -> np.ndarray:
-        return self._blocks(state)[1:]
+    def warmed(self, temperature: Field, change: np.ndarray) -> np.ndarray:
+        """State after a ``change`` of the fields of `across`, with the same walls, K."""
+        out, m = np.array(temperature), self.shape[1]
+        mean, tilt, *surfaces = change
+        out[:, : 4 * m] += np.hstack([mean, mean + tilt, *surfaces])
+        return out
 
-    def _of_film(self, state: np.ndarray) -> np.ndarray:
-        return self._blocks(state)[:2]
+    def _across(self, state: np.ndarray) -> np.ndarray:
+        return self.across(state)[1:]

@@ -19,8 +19,9 @@ from scipy.linalg import lu_factor, lu_solve
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.heat.options import Conduction, FilmEnergy, Rings, Walls
+from exudyn_ehd.joint.heat.equations import BandSolver, HeatBalance, PassageData
 from exudyn_ehd.joint.heat.power import OilFlows, heat_of
-from exudyn_ehd.joint.heat.temperature import BandSolver, HeatBalance, OilTemperature, PassageData
+from exudyn_ehd.joint.heat.temperature import Field, OilTemperature
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.solid.total_lagrange import solve_by_products
 from exudyn_ehd.status import ROUNDING
@@ -102,9 +103,9 @@ class FilmTemperature(OilTemperature):
         """Banded systems of the film's unknowns."""
         return BandSolver(self.shape, self.fields)
 
-    def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
+    def initial_temperature(self) -> np.ndarray:
         """State (n, m + k) at the start of a motion, K."""
-        start = np.full((shape[0], self.size), float(self.initial))
+        start = np.full((self.shape[0], self.size), float(self.initial))
         for wall in self.conducting:
             start[:, wall.columns] = wall.initial
         return start
@@ -149,7 +150,7 @@ class FilmTemperature(OilTemperature):
 
     def advance(self, film: SolvedFilm) -> np.ndarray:
         """State at the end of a solved film's step."""
-        old = self.state_of(film.history)
+        old = np.asarray(self.state_of(film.history))
         return old if film.step <= 0.0 else self._with_supply(film, film.step)
 
     def leaving(self, film: SolvedFilm, temperature: np.ndarray | float) -> np.ndarray:
@@ -171,7 +172,7 @@ class FilmTemperature(OilTemperature):
 
     def _with_supply(self, film: SolvedFilm, step: float) -> np.ndarray:
         """State at the end of a step, s, with the supply temperature of the sump; step 0: steady state."""
-        old, (supply, conductance) = self.state_of(film.history), self.outside(film)
+        old, (supply, conductance) = np.asarray(self.state_of(film.history)), self.outside(film)
         state = self._settled(film, step, old, supply)
         if math.isinf(conductance):
             return state
@@ -191,7 +192,8 @@ class FilmTemperature(OilTemperature):
         Terms: heat in, convected, conducted to the ambient or to given walls, and stored. Also ``bush`` and
         ``journal``, the heat from the film into them, and the supply temperature, K.
         """
-        T, old, (supply, conductance) = self._of_film(temperature), self.state_of(film.history), self.outside(film)
+        T, old = self._of_film(temperature), np.asarray(self.state_of(film.history))
+        supply, conductance = self.outside(film)
         if math.isfinite(conductance):
             cold, warm = (self._carried(film, film.step, temperature, supply + rise) for rise in (0.0, 1.0))
             supply += cold / (conductance + cold - warm)
@@ -208,11 +210,6 @@ class FilmTemperature(OilTemperature):
             out["conducted"] += lost
             out["stored"] += stored
         return out | {"bush": float(q[0].sum()), "journal": float(q[1].sum()), "supply_temperature": supply}
-
-    def state_of(self, history: History | None) -> np.ndarray:
-        """State in a history; the initial state if there is none."""
-        known = None if history is None else history.temperature
-        return self.initial_temperature(self.shape) if known is None else np.asarray(known)
 
     def _surface(self, side: int, state: np.ndarray) -> np.ndarray:
         """Surface temperature of a side, (n, 1) or (1, 1), K."""
@@ -272,7 +269,17 @@ class FilmTemperature(OilTemperature):
 
     def _of_film(self, state: np.ndarray) -> np.ndarray:
         """The film's unknowns (k, n, m) in a state."""
-        return state[None, :, : self.shape[1]]
+        return self.across(state)[: self.fields]
+
+    def across(self, temperature: Field) -> np.ndarray:
+        """Mean temperature (1, n, m) in a state, K."""
+        return np.asarray(temperature)[None, :, : self.shape[1]]
+
+    def warmed(self, temperature: Field, change: np.ndarray) -> np.ndarray:
+        """State after a ``change`` of the fields of `across`, with the same walls, K."""
+        out = np.array(temperature)
+        out[:, : self.shape[1]] += change[0]
+        return out
 
     def _spread(self, w: np.ndarray) -> list[np.ndarray]:
         """Values (k,) at the surfaces of conducting walls as (n, 1) or (1, 1) arrays of both sides; else zero."""
@@ -308,5 +315,5 @@ class Growth:
 
     def field(self, history: History | None) -> np.ndarray:
         """Scaled addition to the gap (n, m)."""
-        opening = self.thermal.opening(self.thermal.state_of(history)) / self.thermal.clearance
+        opening = self.thermal.opening(np.asarray(self.thermal.state_of(history))) / self.thermal.clearance
         return np.full(self.thermal.shape, opening)

@@ -244,7 +244,7 @@ class BearingModel:
         s, remembers, liner, effects = self.solver, self.remembers_mass, self.parts.liner, self.effects
         found = (self.remembers_deflection or s.pockets is not None) and self.evaluate(motion).film is not None
         void, mass, outflow = s.flooded() if remembers else (None, None, None)
-        new = History() if effects.thermal is None else effects.thermal.first_memory(self.grid.shape)
+        new = History() if effects.thermal is None else effects.thermal.first_memory()
         wear = None if effects.wear is None else effects.wear.field(None).copy()
         new = replace(new, void=void, mass=mass, outflow=outflow, wear=wear, pockets=s.pockets if found else None)
         if found and self.remembers_deflection and liner is not None:
@@ -300,7 +300,7 @@ class BearingModel:
         """
         p, c = self.parts, self.bearing.radial_clearance
         p.evaluations += 1
-        temperature, walls = self._set_temperature(history)
+        temperature, walls = self._set_temperature(history, step)
         if p.supply is not None and p.supply.turn(spin):
             self.solver.refresh_fixed()
             self._prescribe()
@@ -350,13 +350,12 @@ class BearingModel:
         scaled = motion[:8] * self._scale
         return JournalMotion(motion, scaled[:4], scaled[4:], float(motion[8]), float(motion[9]))
 
-    def _set_temperature(self, history: History | None) -> tuple[float | np.ndarray | None, Walls | None]:
-        """Set the viscosity to that of the start-of-step temperature; return this temperature and that of walls."""
+    def _set_temperature(self, history: History | None, step: float) -> tuple[float | np.ndarray | None, Walls | None]:
+        """Set the viscosity to that of the extrapolated temperature; return this temperature and that of walls."""
         thermal = self.effects.thermal
         if thermal is None:
             return None, None
-        if (temperature := None if history is None else history.temperature) is None:
-            temperature = thermal.initial_temperature(self.grid.shape)
+        temperature = thermal.extrapolated(history, step)
         if (ratio := thermal.set_viscosity(temperature)) != self.viscosity_ratio:
             self._set_viscosity(ratio)
         return thermal.split(temperature)

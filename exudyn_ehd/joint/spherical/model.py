@@ -126,7 +126,7 @@ class SphericalModel(SphericalFilm):
         self.serial += 1
         self._set_gap(motion)
         void, mass, outflow = self.solver.flooded() if self.remembers_mass else (None, None, None)
-        temperatures = History() if self.thermal is None else self.thermal.first_memory(self.grid.shape)
+        temperatures = History() if self.thermal is None else self.thermal.first_memory()
         return replace(temperatures, void=void, mass=mass, outflow=outflow)
 
     def next_history(self, film: BallFilm) -> History:
@@ -155,7 +155,7 @@ class SphericalModel(SphericalFilm):
         self.serial += 1
         past, T = History() if history is None else history, None
         if self.thermal is not None:
-            T = self.thermal.initial if past.temperature is None else float(past.temperature)
+            T = float(self.thermal.extrapolated(past, step))
             if (thicker := self.thermal.set_viscosity(T)) != self.viscosity_ratio:
                 self._set_viscosity(thicker)
         gap = self.bearing.smallest_gap(motion[PLACE]) if np.isfinite(motion.sum()) else math.nan

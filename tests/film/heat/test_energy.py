@@ -89,18 +89,18 @@ def test_content_rate(fields):
         np.testing.assert_allclose(found, twin, rtol=1e-14, atol=1e-15)
 
 
-def twin_weight(T, z, j, flow):
-    """Weight downstream on the link j -> j+1: the smaller of a half and ``2 r / (1 + r)^2`` up to r = 1."""
-    up = j - 1 if flow > 0.0 else j + 1
-    if flow == 0.0 or not 0 <= up < len(z) - 1:
+def twin_weight(slopes, k, flow):
+    """Weight downstream on the link k with these slopes: a half, or ``2 r / (1 + r)^2`` up to r = 1."""
+    up = k - 1 if flow > 0.0 else k + 1
+    if flow == 0.0 or not 0 <= up < len(slopes):
         return 0.0
-    r = (T[up + 1] - T[up]) / (z[up + 1] - z[up]) * (z[j + 1] - z[j]) / (T[j + 1] - T[j])
+    r = slopes[up] / slopes[k]
     return 0.0 if r <= 0.0 else 2.0 * min(r, 1.0) / (1.0 + min(r, 1.0)) ** 2
 
 
 @pytest.mark.parametrize("held", [0.0, 0.2, np.inf])
 def test_band_is_the_matrix_of_the_balance(fields, held):
-    """Upwind in theta, by the limiter in z, of no more flow than a step holds."""
+    """By the limiter in theta and z, of no more flow than a step holds; one link in theta is missing."""
     n, m = SHAPE
     number, order = np.zeros(SHAPE, dtype=np.int64), np.zeros(n * m, dtype=np.int64)
     _, width = number_cells(np.ones(SHAPE, dtype=np.bool_), np.ones(SHAPE), order, number)
@@ -109,7 +109,9 @@ def test_band_is_the_matrix_of_the_balance(fields, held):
     fields["fz"][:, -1] = 0.0
     z, T, slopes = np.array([0.0, 0.1, 0.4, 0.6, 1.0]), np.cumsum(fields["P"], axis=1), np.empty((5, n * m))
     T[2:4] = fields["q"][2:4]
-    transport_slopes(fields["fx"], fields["fz"], fields["storage"], T, 1.0 / np.diff(z), np.full(SHAPE, held), slopes)
+    lengths = 1.0 / (0.3 + 0.1 * np.arange(n)), 1.0 / np.diff(z)
+    lengths[0][4], fields["fx"][4] = 0.0, 0.0
+    transport_slopes(fields["fx"], fields["fz"], fields["storage"], T, lengths, np.full(SHAPE, held), slopes)
     assemble(np.ones(SHAPE), fields["fz"], slopes, number, order, n * m, lower, upper)
     band = np.zeros((n * m, n * m))
     for r in range(n * m):
@@ -127,12 +129,16 @@ def test_band_is_the_matrix_of_the_balance(fields, held):
         twin[down, down] += abs(flow)
         twin[down, up] -= abs(flow)
         if kind == "z":
-            weights.append(twin_weight(T[a[0]], z, a[1], flow))
-            share = weights[-1] * min(abs(flow), held)
-            twin[up, down] += share
-            twin[up, up] -= share
-            twin[down, down] -= share
-            twin[down, up] += share
+            weights.append(twin_weight(np.diff(T[a[0]]) / np.diff(z), a[1], flow))
+        else:
+            around = lengths[0] * (np.roll(T[:, a[1]], -1) - T[:, a[1]])
+            # the link before the first one is the last one
+            weights.append(twin_weight(np.roll(around, 1 - a[0]), 1, flow))
+        share = weights[-1] * min(abs(flow), held)
+        twin[up, down] += share
+        twin[up, up] -= share
+        twin[down, down] -= share
+        twin[down, up] += share
     np.testing.assert_allclose(band, twin, rtol=1e-14, atol=1e-15)
     # every branch of the limiter
     assert {0.0, 0.5} < set(weights)

@@ -201,7 +201,7 @@ def test_vanishing_compressibility_recovers_the_incompressible_film(thermal, cav
         found = run(model)[0].temperature, settled_history(model, REST).temperature
         errors.append([np.abs(np.asarray(f) - e).max() for f, e in zip(found, expected, strict=True)])
     errors = np.array(errors)
-    assert np.all(errors[0] < 1e-2)  # K
+    assert np.all(errors[0] < 2e-2)  # K
     assert np.all(errors[1] < 0.11 * errors[0])
 
 

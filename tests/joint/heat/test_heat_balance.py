@@ -205,7 +205,8 @@ def test_a_supply_area_is_well_mixed(closure, area, carry_over):
     T, inside = model.effects.thermal.steady_temperature(film) - SUPPLY, model.parts.supply.masks[0]
     mix, flows, slopes = T[inside].mean(), OilFlows(film, 1.0), np.empty((5, T.size))
     assert np.ptp(T[inside]) < 2e-3 * T.max()
-    transport_slopes(flows.x, flows.z, flows.entering, T, film.grid.link_z, np.full(T.shape, np.inf), slopes)
+    links, unlimited = (film.grid.link_x, film.grid.link_z), np.full(T.shape, np.inf)
+    transport_slopes(flows.x, flows.z, flows.entering, T, links, unlimited, slopes)
     slopes, given, arriving = slopes.reshape(5, *T.shape), 0.0, 0.0
     for axis, flow in enumerate((flows.x, flows.z)):
         leaves = inside.astype(float) - np.roll(inside, -1, axis)

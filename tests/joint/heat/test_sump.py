@@ -97,8 +97,8 @@ def test_sump_in_time(make_bearing, kind, options):
         for _ in range(30):
             history = model.evaluate(motion, history, 20.0).history()
         film = ehd.steady(model.bearing, speed=250.0, eccentricity_ratio=0.6, direction=-2.2)
-        # the heats of temperature fields after long steps and of steady ones are 2e-3 apart, from a given supply too
-        near = (3e-3 if kind == "field" else 1e-6) * (film.supply_temperature - AMBIENT)
+        # the heats of temperature fields after long steps and of steady ones are 6e-3 apart, from a given supply too
+        near = (7e-3 if kind == "field" else 1e-6) * (film.supply_temperature - AMBIENT)
         assert history.sump == pytest.approx(film.supply_temperature, abs=near)
     slow = replace(model.bearing.thermal, supply_temperature=replace(sump, heat_capacity=0.0))
     model = build_model(replace(bearing, thermal=slow))

@@ -68,7 +68,7 @@ def run(model, at, step, steps, history=None):
 def test_adiabatic_petroff_heating_in_time(thermal):
     """No through-flow, no conduction.
 
-    Exp(beta (T - T0)) = 1 + beta P0 t / (rho c_p V), approached with the first order.
+    Exp(beta (T - T0)) = 1 + beta P0 t / (rho c_p V), approached with the second order.
     """
     model, at, end, errors = build_model(bearing(thermal)), motion(), 0.02, []
     volume = 2.0 * math.pi * R * L * C
@@ -78,8 +78,34 @@ def test_adiabatic_petroff_heating_in_time(thermal):
         history, worst = run(model, at, end / steps, steps)
         assert worst < BALANCE
         errors.append(float(np.abs(np.asarray(history.temperature) - SUPPLY - exact).max()))
-    assert errors[1] < 2e-3 * exact  # first order, 400 steps
-    assert 1.8 < errors[0] / errors[1] < 2.2
+    assert errors[1] < 1e-5 * exact
+    assert 3.8 < errors[0] / errors[1] < 4.2
+
+
+@pytest.mark.parametrize("cavitation", sample([ehd.SwiftStieber(), ehd.FullSommerfeld(), ehd.Gumbel()], 0), ids=repr)
+@pytest.mark.parametrize("turn", [0.5, 1.0])
+def test_a_hot_place_that_moves_is_of_second_order_in_time(cavitation, turn):
+    """The smallest gap turns with the oil, or with the journal: temperatures and force after one of its turns.
+
+    The errors of 64, 128 and 256 steps fall by more than three each time, the last one is below 3e-4 of the force.
+    """
+    thermal, found = ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=1e3), []
+    for steps in (64, 128, 256, 1024):
+        model, history, at = build_model(bearing(thermal, cavitation=cavitation)), None, motion()
+        rate = turn * at[8]
+        for k in range(1, steps + 1):
+            angle = 2.0 * math.pi * k / steps
+            at[:2] = 0.6 * C * math.cos(angle), 0.6 * C * math.sin(angle)
+            at[4:6] = -rate * at[1], rate * at[0]
+            history = model.initial_history(at) if history is None else history
+            evaluation = model.evaluate(at, history, 2.0 * math.pi / rate / steps)
+            history = evaluation.history()
+        found.append((history.temperature, evaluation.wrench[:2]))
+    for values, largest in zip(zip(*found), (3e-3, 3e-4)):
+        size = np.ptp(values[-1]) if values[-1].ndim == 2 else np.linalg.norm(values[-1])
+        errors = np.array([np.abs(one - values[-1]).max() for one in values[:3]]) / size
+        assert errors[-1] < largest
+        assert np.all(errors[:-1] > 3.0 * errors[1:])
 
 
 def test_adiabatic_petroff_heating_along_the_bearing():
@@ -223,9 +249,10 @@ def test_steady_temperature_is_where_the_transient_ends(cavitation):
     at = motion(0.5)
     settled = settled_history(model, at).temperature
     history, _ = run(model, at, 2e-3, 600)
-    np.testing.assert_allclose(
-        history.temperature, settled, atol=1e-6
-    )  # steps of ten revolutions, long after the start
+    # the oil of steps of ten revolutions passes many columns: its transport is of first order in part
+    assert 1e-3 < np.abs(history.temperature - settled).max() < 0.01 * np.ptp(settled)
+    history, _ = run(model, at, 2.0 * math.pi / at[8] / 64, 1600, history)
+    np.testing.assert_allclose(history.temperature, settled, atol=1e-6)
 
 
 def test_field_heat_is_the_mechanical_power():
@@ -310,7 +337,8 @@ def test_input_errors_name_what_is_missing():
 def test_long_steps_do_not_swing_and_short_ones_are_explicit(thermal):
     """Steps of ten exchanges of the oil, hot by 60 to 110 K: every film after the first few is the steady one.
 
-    A step whose heat is held would swing between a third and twice the load.
+    With a temperature field up to 1 %, as the oil passes many columns in a step. A step whose heat is held would swing
+    between a third and twice the load.
     """
     law = ehd.VogelTemperature(first=(313.15, 0.05), second=(373.15, 0.008))
     b = ehd.JournalBearing(
@@ -332,7 +360,7 @@ def test_long_steps_do_not_swing_and_short_ones_are_explicit(thermal):
             evaluation = model.evaluate(at, history, step)
             loads.append(float(np.hypot(*evaluation.wrench[:2])))
             history = evaluation.history()
-        np.testing.assert_allclose(loads, steady, rtol=2e-3)
+        np.testing.assert_allclose(loads, steady, rtol=0.01 if isinstance(thermal, ehd.FilmEnergy) else 2e-3)
     # a thousandth of an exchange: what the oil stores is the power at the temperature of the step's start
     start = model.initial_history(at)
     film = model.evaluate(at, start, 1e-5)

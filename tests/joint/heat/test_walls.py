@@ -133,8 +133,10 @@ def _reference(eccentricity, n=96):
 
 
 def test_film_and_walls_against_a_reference_of_another_kind():
-    """Temperatures of film, bore and journal: 1 % of what they vary by around the film, and of first order, as
-    upwinding is."""
+    """Temperatures of film, bore and journal: 0.5 % of what they vary by around the film.
+
+    The error is of first order, as the film begins at the inlet by upwinding.
+    """
     T, b, s = _reference(0.8)
     assert np.ptp(T) > 1.2 and np.ptp(b) > 2.9 and np.mean(T) > SUPPLY + 50.0
     walls, errors = {"bush": dataclasses.replace(BUSH, rings=16), "journal": JOURNAL}, []
@@ -146,8 +148,8 @@ def test_film_and_walls_against_a_reference_of_another_kind():
         got = result.temperature[:: n // 96, 1] - np.roll(T, -48), result.walls.bush[:: n // 96, 0] - np.roll(b, -48)
         errors.append([float(np.abs(e).max()) for e in got])
         assert abs(result.walls.journal[0] - s) < 1e-3
-    assert errors[0][0] < 0.01 * np.ptp(T) and errors[0][1] < 0.01 * np.ptp(b)
-    assert np.all(np.divide(*errors) > 1.8) and np.all(np.divide(*errors) < 2.3)
+    assert errors[0][0] < 0.005 * np.ptp(T) and errors[0][1] < 0.005 * np.ptp(b)
+    assert np.all(np.divide(*errors) > 2.0)
 
 
 @pytest.mark.slow
