@@ -304,6 +304,9 @@ def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: 
 # Eccentricity ratio, in the direction of the load, from which another position is searched. Larger: nearer to a closed
 # gap.
 LOADED = 0.9
+# Distance over the clearance up to which two positions count as the same: where the stiffness is nearly singular, a
+# load in balance to its tolerance leaves a position far less accurate. Larger: two positions may be taken for one.
+SAME_PLACE = 1e-3
 STEADINESS = (
     "has a negative determinant: a journal does not stay there",
     "is not positive definite: the damping decides whether a journal stays",
@@ -336,7 +339,7 @@ def steadiest(search: LoadSearch, found: Place) -> Place:
         if other is None:
             continue
         away = min(float(np.hypot(*(other.motion - place.motion)[:2])) for place in places)
-        if away > SMALL * b.radial_clearance:
+        if away > SAME_PLACE * b.radial_clearance:
             places.append(other)
     best = max(places, key=_steadiness)
     if len(places) > 1 or _steadiness(best) == 0:
