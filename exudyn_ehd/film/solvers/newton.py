@@ -270,8 +270,8 @@ def proceed(norm, gap, course, kind, pc, full, state, oil, density, film, feedba
     if not (gap > 0.0 and norm < np.inf):
         return LOST, course
     most, stored, nonlinearity = MOST_STEPS, 0.0, _nonlinearity(pc, oil, density, residual)
-    if kind == RUPTURE and density is None and feedback is None:
-        # the rupture line may move by only one column per step
+    if kind >= RUPTURE and density is None and feedback is None:
+        # a rupture or reformation line may move by only one column per step
         most = max(most, P.shape[0])
     if feedback is not None:
         elements, relative_slopes = feedback[0], matrix[6]

@@ -95,8 +95,7 @@ def recover(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
 def solve_in_pseudo_time(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
     """Solve a film by pseudo-transient continuation from a full film; returns (status, Newton steps).
 
-    If it fails, the status is NO_OIL for a film without rates in which a row has run dry, or into which nothing presses
-    oil.
+    If it fails, the status is NO_OIL for a film without rates in which a row has run dry.
     """
     largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
     largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - s.base), initial=0.0))
@@ -122,9 +121,7 @@ def solve_in_pseudo_time(s: FilmSystem, work: Workspace) -> tuple[Status, int]:
     ok, steps = pseudo_time(attempt, rate if rate > 0.0 else 1.0)
     if ok:
         return Status.CONVERGED, steps
-    # without a pressure above the cavity's nothing presses oil into the film
-    fed = bool(np.any(s.pressure[s.fixed] > s.cavity_pressure))
-    return (Status.NO_OIL if (runs_dry or not fed) and not s.H_t.any() else Status.NOT_CONVERGED), steps
+    return (Status.NO_OIL if runs_dry and not s.H_t.any() else Status.NOT_CONVERGED), steps
 
 
 def _states_of(s: FilmSystem, work: Workspace) -> tuple[np.ndarray | None, ...]:
