@@ -176,9 +176,8 @@ def curve_terms(film, b, density, lift, curve):
     for c in range(size):
         prv = c - m if c >= m else c - m + size
         nxt = c + m if c + m < size else c + m - size
-        out = max(f_x[c], 0.0) - min(f_x[prv], 0.0) + max(f_z[c], 0.0)  # nothing flows over the last row's links
-        if c % m > 0:
-            out -= min(f_z[c - 1], 0.0)
+        # nothing flows over the last row's links in z
+        out = max(f_x[c], 0.0) - min(f_x[prv], 0.0) + max(f_z[c], 0.0) - min(f_z[c - 1], 0.0)
         curve.out[c] = density * out
         curve.k[c] = 0.5 * (along[prv] + along[c]) + lift[c % m]
         curve.f[c] = curve.whole[c] = curve.drop[c] = curve.bend[c] = 0.0
@@ -267,8 +266,7 @@ def add_curve(curve, terms, density, slopes):
             right, left = 0.5 * (here + rho[min(c + 1, size - 1)]), 0.5 * (here + rho[max(c - 1, 0)])
         slopes[0, c] += carried * max(along[c], 0.0) * on
         slopes[1, prv] += carried * min(along[prv], 0.0) * back
-        if c + 1 < size:
-            slopes[2, c] += carried * max(across[c], 0.0) * right
-        if c > 0:
-            slopes[3, c - 1] += carried * min(across[c - 1], 0.0) * left
+        # nothing flows over the last row's links in z
+        slopes[2, c] += carried * max(across[c], 0.0) * right
+        slopes[3, c - 1] += carried * min(across[c - 1], 0.0) * left
         slopes[4, c] += held * area[c] * grow[c]

@@ -275,14 +275,10 @@ def right_hand_side(fx, fz, squeeze, H_t, area, b_out):
     """Set b: net Couette inflow of every control volume, less the storage ``dH/dt area`` if ``squeeze``."""
     n, m = fx.shape
     for i in range(n):
-        p = i - 1 if i > 0 else n - 1
         for j in range(m):
-            b_out[i, j] = fx[p, j] - fx[i, j]
-        b_out[i, 0] -= fz[i, 0]
-        for j in range(1, m):
-            b_out[i, j] += fz[i, j - 1] - fz[i, j]
-        if squeeze:
-            for j in range(m):
+            # nothing flows over the last row's links in z
+            b_out[i, j] = fx[i - 1, j] - fx[i, j] + fz[i, j - 1] - fz[i, j]
+            if squeeze:
                 b_out[i, j] -= H_t[i, j] * area[i, j]
 
 
@@ -318,14 +314,9 @@ LARGEST_OUTFLOW = 0.5
 
 @njit(cache=True, inline="always")
 def _leaves(fx, fz, i, j):
-    """Return the Couette flow of a full film out of a vertex."""
-    n, m = fx.shape
-    out = max(fx[i, j], 0.0) - min(fx[i - 1 if i > 0 else n - 1, j], 0.0)
-    if j + 1 < m:
-        out += max(fz[i, j], 0.0)
-    if j > 0:
-        out -= min(fz[i, j - 1], 0.0)
-    return out
+    """Return the Couette flow of a full film out of a vertex; nothing flows over the last row's links in z."""
+    out_x, out_z = max(fx[i, j], 0.0) - min(fx[i - 1, j], 0.0), max(fz[i, j], 0.0) - min(fz[i, j - 1], 0.0)
+    return out_x + out_z
 
 
 @njit(cache=True)
