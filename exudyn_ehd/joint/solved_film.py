@@ -67,8 +67,8 @@ class History:
         Film temperature, K; (n, m + k) followed by those of conducting walls, see `exudyn_ehd.joint.heat.walls`;
         (n, 4 m + k) with two temperatures across the film, see `exudyn_ehd.joint.heat.across`.
     heating : (2, k, ...) array or None
-        Mean rates of the temperature in the last step, K/s, as those of k fields across the film; and the same where
-        the rate of the first field had this sign in the step before too, else 0.
+        Rates of k temperatures across the film, K/s: the mean rates in the last step; and the rates by which the next
+        step extrapolates, 0 where the first one has changed its sign.
     last_step : float
         Size of that step, s; 0 at the start of a motion.
     deflection : (n, m) array or None

@@ -191,8 +191,7 @@ def apply_step(kind, nonlinearity, curves, order, count, dx, full, u, P):
     ----------
     nonlinearity : tuple
         Weight of a relative change of density or gap, where a change of u on a curve has the weight 1; these relative
-        changes (n, m) per unit of P; P at which the oil's law ends; p' and p'' of the
-        law (2, n m); Pa per unit of P.
+        changes (n, m) per unit of P; P at which the oil's law ends; p' and p'' of the law (2, n m); Pa per unit of P.
 
     Returns
     -------

@@ -23,8 +23,8 @@ dm/dt).
 With the temperature upstream as T_link the transport would be of first order. That is too inaccurate where hot oil
 turns past cold oil that enters at the ends, and where the hot side of the film moves: with a load that turns with the
 oil, the smallest gap on 64 columns would be 2.6 times that on 256. So T_link is of second order, with a limiter that
-makes no extrema along a row or a column. The heat that leaves one vertex over a link enters the other one, so that the
-heat balance holds.
+reduces it to first order at extrema along a row or a column. The heat that leaves one vertex over a link enters the
+other one, so that the heat balance holds.
 
 Heat from a film's mean temperature through both of its surfaces
 ----------------------------------------------------------------
@@ -188,9 +188,10 @@ def transport_slopes(qx, qz, diagonal, T, links, held, slopes_out):
     therefore subtracted from ``diagonal`` (n, m), which holds all other terms of its own temperature. ``qz`` is zero in
     the last column, where there is no link. ``links``: inverse lengths (n,) and (m,) of the links in theta and z.
 
-    A limiter gives the shares from the temperatures ``T`` (n, m) at the start of a step. With shares up to a half the
-    solution does not grow. The storage term ``held`` (n, m) upstream limits the flow that a share multiplies. Without
-    this limit shares and temperatures would alternate from step to step if the steps are long.
+    A limiter gives the shares from given temperatures ``T`` (n, m): those extrapolated to the end of a step, or those
+    of the last round of a steady search. With shares up to a half the solution does not grow. The storage term ``held``
+    (n, m) upstream limits the flow that a share multiplies. Without this limit shares and temperatures would alternate
+    from step to step if the steps are long.
     """
     n, m = qx.shape
     for i in range(n):
@@ -210,7 +211,7 @@ def transport_slopes(qx, qz, diagonal, T, links, held, slopes_out):
 def weight_along(T, link_x, i, flow):
     """Return `downstream_weight` on the link i -> i+1 in theta, for the temperatures T (n,) of a row.
 
-    It is zero if the link upstream does not exist.
+    It is zero if there is no link upstream, as at the edge of an arc.
     """
     n = len(T)
     up = (i - 1 if flow > 0.0 else i + 1) % n
@@ -220,7 +221,10 @@ def weight_along(T, link_x, i, flow):
 
 @njit(cache=True, inline="always")
 def weight_across(T, link_z, j, flow):
-    """Return `downstream_weight` on the link j -> j+1 in z, for the temperatures T (m,) of a column."""
+    """Return `downstream_weight` on the link j -> j+1 in z, for the temperatures T (m,) of a column.
+
+    It is zero if the link upstream would lie outside the film.
+    """
     up, weight = j - 1 if flow > 0.0 else j + 1, 0.0
     if flow != 0.0 and 0 <= up < len(T) - 1:
         weight = downstream_weight((T[j + 1] - T[j]) * link_z[j], (T[up + 1] - T[up]) * link_z[up])
@@ -232,8 +236,7 @@ def downstream_weight(own, before):
     """Weight of the temperature downstream of a link, from the slopes on the link and on the one upstream.
 
     With the ratio r of the slope upstream to the slope on the link, the weight is a half for r >= 1 and
-    ``2 r / (1 + r)^2`` for a smaller r, with a continuous slope at r = 1. It is zero at extrema and if the link
-    upstream would lie outside the film.
+    ``2 r / (1 + r)^2`` for a smaller r, with a continuous slope at r = 1. It is zero at extrema, where r < 0.
     """
     weight = 0.0
     if own * before > 0.0:

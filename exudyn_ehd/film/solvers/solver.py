@@ -143,9 +143,9 @@ class FilmSolver(FilmAnswers):
     def _balance(self, r: Reservoirs, solve: Callable[[], tuple[Status, int]], floor: float) -> tuple[Status, int]:
         """Solve the film and the pressures of its reservoirs by Newton's method; no pressure is below ``floor``, Pa.
 
-        A step is halved if the largest balance over the size of its terms grows; a balance that is not halved any more
-        is accepted as round-off. An unbroken film of constant properties is linear in the
-        pressures of the reservoirs: it is solved once, then updated by superposition.
+        A step is halved if the largest balance over the size of its terms grows. A balance below `ROUNDING` that no
+        longer halves is accepted as round-off. An unbroken film of constant properties is linear in the pressures of
+        the reservoirs: it is solved once, then updated by superposition.
         """
         base, change, smallest_error, steps = r.pressures, np.zeros(len(r.masks)), np.inf, 0
         weights, known, largest_change = base, base, np.inf

@@ -167,6 +167,15 @@ def test_motions_that_are_not_found_are_no_result(monkeypatch):
         found.growth  # noqa: B018
 
 
+def test_an_eigenvalue_that_is_exact_to_round_off_is_found():
+    """A first guess at which the dynamic stiffness is singular, with a vector that is not in balance yet."""
+    M, D, K = np.eye(2), np.diag([3.0, 1.0]), np.diag([2.0, 7.0])
+    for s in (-1.0, -2.0):
+        found, y = vibrations._refined(M, D, K, [], complex(s), np.array([1.0, 1e-5], dtype=complex))
+        assert found == s
+        np.testing.assert_allclose(np.abs(y), [1.0, 0.0], atol=1e-12)
+
+
 def unstable_motions(result):
     """Number of eigenvalues with a positive real part, by the turns of det T along the imaginary axis.
 

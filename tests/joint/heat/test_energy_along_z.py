@@ -38,10 +38,12 @@ def load(b):
     ("options", "bounds"),
     sample(
         [
-            # a band of hot oil that turns with the journal, cold oil beside it; upwind 9, 5 and 2 % and still falling
+            # a band of hot oil that turns with the journal, cold oil beside it: 6.8, 3.0 and 1.0 %; upwind along z 9, 5
+            # and 2 % and still falling
             ({"cavitation": UNSUPPLIED}, (0.075, 0.034, 0.012)),
             ({"cavitation": UNSUPPLIED, "cooling": 2000.0}, (0.015, 0.006, 0.002)),
-            # a groove of 0.8 L leaves four intervals to each land beside it: without heat 0.2 and 0.02 %, order three
+            # a groove of 0.8 L leaves four intervals to each land beside it: without heat 0.2 and 0.02 %, order three;
+            # with heat 0.51, 0.18 and 0.10 %
             ({"cavitation": UNSUPPLIED, "supply": GROOVE}, (0.006, 0.002, 1.1e-3)),
             # its rows lie on either side of the groove's edges
             ({"cavitation": ehd.ElrodAdams(), "supply": GROOVE}, (0.0045, 7e-4, 1e-4)),

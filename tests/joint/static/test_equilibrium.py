@@ -395,6 +395,7 @@ class TestThermal:
             np.testing.assert_allclose(settled @ (ends[0] - ends[1]), change, atol=0.03 * 30.0)
 
     def test_position_and_temperature_together_take_few_film_solves(self, make_bearing, kind, monkeypatch):
+        """A field takes twice as many: the limiter of its transport depends on the temperature that is sought."""
         rng, solves = np.random.default_rng(8), _counted(monkeypatch)
         for size in (100.0, 2e3, 2e4, *np.exp(rng.uniform(math.log(100.0), math.log(3e4), 9))):
             turn = rng.uniform(0.0, 2.0 * math.pi)
