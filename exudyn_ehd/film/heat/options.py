@@ -278,8 +278,8 @@ class FilmEnergy(Checked):
     - ``across=1``, walls at given temperatures, with ``conductivity``: load 4 % (both walls) or 9 % (one), mean
       temperature 1.5 or 6 K; an adiabatic bush opposite a cooled journal is up to 8 K hotter than the mean. Load 14 %
       with coefficients 3 k/c in place of the conductivity.
-    - ``across=2``: load and peak pressure 1.5 % on 192 columns and 2.4 % on 96, mean temperature 1 K, hottest place of
-      the bush 0.9 K; load 3 % next to a journal that is colder than the oil that enters.
+    - ``across=2``: load and peak pressure 1.9 % on 192 columns and 2.5 % on 96, mean temperature and hottest place of
+      the bush 1 K; load 3 % next to a journal that is colder than the oil that enters.
 
     With ``across=2`` temperature and fluidity 1/mu are cubics across the film and change velocities and wall stresses.
     Oil is mixed over the height of supply areas. `SteadyResult.walls` has the temperatures ``across`` the film,
