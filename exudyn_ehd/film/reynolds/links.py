@@ -13,8 +13,8 @@ With an effect (flow factors of rough surfaces, shear thinning, a temperature fi
 Symbols: H (n, m) gap at vertices, HF (n, m) gap on the link i -> i+1, kx / kz link conductances with their metric, fx /
 fz Couette fluxes with their metric, b right-hand side of ``A P = b``, P scaled pressure.
 
-Couette flows out of a cavity, averaged over the step: transport of second order in time
-----------------------------------------------------------------------------------------
+Couette flows out of a cavity: transport of second order in time and space
+--------------------------------------------------------------------------
 With the void ``v = H - fill H`` and the transport speed U, the mass balance of a film reads
 
     dv/dt + div (U v) = dH/dt + div (U H) + div (pressure flow).
@@ -34,6 +34,13 @@ If a step carries C times the content of a vertex away, a void without inflow is
 ``(1 - w C) / (1 + (1 - w) C)``. For ``w C < 1`` this lies between 0 and 1, so that the void decays without a change of
 sign. For any C, ``late`` carries at most half of the content away. w is 0 in gaps that open or close by more than the
 oil in them.
+
+The fill of a vertex would carry the oil with an error of first order in the length of a link. In time it would smooth
+the oil content along theta, most where the oil moves slowly against the cavity, as in whirl at half of the speed. So
+``late`` also holds the rise of the fill from the vertex to the middles of the links downstream, with the limiter
+`downstream_weight`. It is that at the start of the step, so that the equations stay linear. Between -w late and
+w (1 - late), it leaves the fill of the flow between 0 and 1. A steady film needs no rise: its flows are exact, and only
+the fills are those of half a link downstream.
 
 Differences and sums over the links
 -----------------------------------
@@ -319,18 +326,76 @@ def _leaves(fx, fz, i, j):
     return out_x + out_z
 
 
-@njit(cache=True)
-def outflow_of(fx, fz, H, H_t, area, fill):
-    """Return fields (3, n, m) for the next step: fill; rate of the gap over the gap, 1/s; Couette outflow of a full
-    film over its volume, 1/s."""
+@njit(cache=True, inline="always")
+def weight_along(T, link_x, i, flow):
+    """Return `downstream_weight` on the link i -> i+1 in theta, for the values T (n,) of a row.
+
+    It is zero if there is no link upstream, as at the edge of an arc.
+    """
+    n = len(T)
+    up = (i - 1 if flow > 0.0 else i + 1) % n
+    own, before = (T[(i + 1) % n] - T[i]) * link_x[i], (T[(up + 1) % n] - T[up]) * link_x[up]
+    return downstream_weight(own, before)
+
+
+@njit(cache=True, inline="always")
+def weight_across(T, link_z, j, flow):
+    """Return `downstream_weight` on the link j -> j+1 in z, for the values T (m,) of a column.
+
+    It is zero if the link upstream would lie outside the film.
+    """
+    up, weight = j - 1 if flow > 0.0 else j + 1, 0.0
+    if flow != 0.0 and 0 <= up < len(T) - 1:
+        weight = downstream_weight((T[j + 1] - T[j]) * link_z[j], (T[up + 1] - T[up]) * link_z[up])
+    return weight
+
+
+@njit(cache=True, inline="always")
+def downstream_weight(own, before):
+    """Weight of the value downstream of a link, from the slopes on the link and on the one upstream.
+
+    With the ratio r of the slope upstream to the slope on the link, the weight is a half for r >= 1 and
+    ``2 r / (1 + r)^2`` for a smaller r, with a continuous slope at r = 1. It is zero at extrema, where r < 0.
+    """
+    weight = 0.0
+    if own * before > 0.0:
+        weight = 0.5 if abs(before) >= abs(own) else 2.0 * own * before / (own + before) ** 2
+    return weight
+
+
+@njit(cache=True, inline="always")
+def _rise(fx, fz, fill, link_x, link_z, i, j):
+    """Return the rise of the fill from a vertex to the middles of the links downstream, weighted by their flows."""
     n, m = fill.shape
-    out = np.empty((3, n, m))
+    own, leaves, rise = fill[i, j], 0.0, 0.0
+    down, up = (i + 1 if i + 1 < n else 0), (i - 1 if i > 0 else n - 1)
+    for link, to in ((i, down), (up, up)):
+        flow = fx[link, j]
+        if (flow > 0.0) == (link == i):
+            leaves += abs(flow)
+            rise += abs(flow) * weight_along(fill[:, j], link_x, link, flow) * (fill[to, j] - own)
+    for link, to in ((j, j + 1), (j - 1, j - 1)):
+        flow = fz[i, link] if 0 <= link < m - 1 else 0.0
+        if flow != 0.0 and (flow > 0.0) == (link == j):
+            leaves += abs(flow)
+            rise += abs(flow) * weight_across(fill[i], link_z, link, flow) * (fill[i, to] - own)
+    return rise / leaves if leaves > 0.0 else 0.0
+
+
+@njit(cache=True)
+def outflow_of(fx, fz, H, H_t, area, links, fill):
+    """Return fields (4, n, m) for the next step: fill; rate of the gap over the gap, 1/s; Couette outflow of a full
+    film over its volume, 1/s; rise of the fill to the middles of the links downstream. ``links``: inverse
+    lengths (n,) and (m - 1,) of the links in theta and z."""
+    n, m = fill.shape
+    out = np.empty((4, n, m))
     for i in range(n):
         for j in range(m):
             volume = area[i, j] * H[i, j]
             out[0, i, j] = fill[i, j]
             out[1, i, j] = H_t[i, j] / H[i, j]
             out[2, i, j] = _leaves(fx, fz, i, j) / volume if volume > 0.0 else 0.0
+            out[3, i, j] = _rise(fx, fz, fill, links[0], links[1], i, j)
     return out
 
 
@@ -358,7 +423,8 @@ def lag_void(outflow, step, fixed, prompt_out, late_out):
                 continue
             late = (fill + grows) / (1.0 + grows)
             w = min(LARGEST_LAG, late / fill, fill / late * min(1.0, LARGEST_OUTFLOW / max(drains, LARGEST_OUTFLOW)))
-            prompt_out[i, j], late_out[i, j] = 1.0 - w, w * late
+            prompt_out[i, j] = 1.0 - w
+            late_out[i, j] = w * late + min(max(outflow[3, i, j], -w * late), w * (1.0 - late))
 
 
 def following(P: np.ndarray) -> np.ndarray:

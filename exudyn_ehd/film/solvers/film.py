@@ -346,10 +346,10 @@ class FilmArrays:
 
     def flooded(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the results of `stored` and `outflow` for a full film at the present gaps, without flows so far."""
-        return self.nothing, self.H.copy(), np.array([self.ones, self.nothing, self.nothing])
+        return self.nothing, self.H.copy(), np.array([self.ones, self.nothing, self.nothing, self.nothing])
 
     def lag(self, outflow: np.ndarray | None, step: float) -> None:
-        """Average the next solution's flows out of cavities over its step, from ``outflow`` (3, n, m) at its start;
+        """Average the next solution's flows out of cavities over its step, from ``outflow`` (4, n, m) at its start;
         None, or a step of 0: no average."""
         s = self.system
         if outflow is not None and step > 0.0:
@@ -365,13 +365,13 @@ class FilmArrays:
             hold_back(self.system.fields, self.system.inverse_step * self.system.mass_old, self.system.late)
 
     def outflow(self) -> np.ndarray:
-        """Fields (3, n, m) of the last solution that `exudyn_ehd.film.reynolds.links` needs in the next step.
+        """Fields (4, n, m) of the last solution that `exudyn_ehd.film.reynolds.links` needs in the next step.
 
         A vertex at a line inside the cells counts as full, since the flows out of it follow its pressure, not its fill.
         """
         s, line = self.system, self.oil_line
         fill = s.fill if line is None else np.where(line.s < 1.0, 1.0, s.fill)
-        return outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, fill)
+        return outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, (self.grid.link_x, self.grid.link_z), fill)
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette flows of the links in theta and z, and rate of a full film's content per area, all (n, m); mass flows
