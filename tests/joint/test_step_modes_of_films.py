@@ -61,7 +61,9 @@ class Response:
             for place in np.argwhere(np.abs(getattr(memory, name)) > 1e-9)
         ]
         if memory is not None and memory.outflow is not None:
-            self.parts += [("outflow", (k, *place)) for k in (0, 1, 3) for place in np.argwhere(memory.outflow[0] < 1.0)]
+            self.parts += [
+                ("outflow", (k, *place)) for k in (0, 1, 3) for place in np.argwhere(memory.outflow[0] < 1.0)
+            ]
 
         def ask(move=0.0, rate=0.0, memory=memory):
             at = motion.copy()

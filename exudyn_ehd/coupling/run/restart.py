@@ -29,7 +29,7 @@ from exudyn_ehd.joint.time_step import StepStart
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 from exudyn_ehd.storage import read_arrays, replacing, require_path
 
-_FORMAT = "exudyn_ehd SystemState 8"
+_FORMAT = "exudyn_ehd SystemState 9"
 Part = TypeVar("Part", History, StepStart)
 _PARTS = ("ODE2", "ODE2_t", "ODE1", "AE", "Data")
 
@@ -298,6 +298,7 @@ def _memory(
         first,
         void=last.void,
         mass=last.mass,
+        outflow=last.outflow,
         deflection=last.deflection,
         temperature=temperature,
         pockets=last.pockets,

@@ -310,6 +310,8 @@ class FilmSystem:
     prompt, late : (n, m) arrays
         Couette flows carry the fill ``prompt fill + late``, see `exudyn_ehd.film.reynolds.links`; 1 and 0 if it is not
         averaged over the step.
+    rise : (n, m) array
+        Part of ``late``: rise of the fill from the vertex to the links downstream, 0 in a steady film.
     inverse_step : float
         1 / time step since ``mass_old``, 1/s; 0: steady.
     closes : bool
@@ -354,7 +356,7 @@ class FilmSystem:
         self.closes, self.turns = False, 0.0
         empty = np.ones(shape if kind == OIL else (0, 0))
         self.fill, self.mass_old = empty, empty.copy()
-        self.prompt, self.late = self.terms.prompt, np.zeros(shape)
+        self.prompt, self.late, self.rise = self.terms.prompt, np.zeros(shape), np.zeros(shape)
         self.prompt[:] = 1.0
         self.line: RuptureLine | None = None
         self.column_line: ColumnLine | None = None

@@ -48,16 +48,7 @@ import math
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.reynolds.links import (
-    FluxEffect,
-    LinkFlux,
-    drop_weights,
-    drops,
-    following,
-    to_ends,
-    weight_across,
-    weight_along,
-)
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drop_weights, drops, following, to_ends
 
 # Heights of Lobatto's four points, over the gap.
 LOBATTO = np.array([0.0, 0.5 - 0.5 / math.sqrt(5.0), 0.5 + 0.5 / math.sqrt(5.0), 1.0])
@@ -214,6 +205,43 @@ def transport_slopes(qx, qz, diagonal, T, links, held, slopes_out):
             slopes_out[2, k], slopes_out[3, k] = max(z, 0.0) - share_z, min(z, 0.0) + share_z
             into = qx[prv, j] + (qz[i, j - 1] if j > 0 else 0.0)
             slopes_out[4, k] = diagonal[i, j] - (x + z - into)
+
+
+@njit(cache=True, inline="always")
+def weight_along(T, link_x, i, flow):
+    """Return `downstream_weight` on the link i -> i+1 in theta, for the temperatures T (n,) of a row.
+
+    It is zero if there is no link upstream, as at the edge of an arc.
+    """
+    n = len(T)
+    up = (i - 1 if flow > 0.0 else i + 1) % n
+    own, before = (T[(i + 1) % n] - T[i]) * link_x[i], (T[(up + 1) % n] - T[up]) * link_x[up]
+    return downstream_weight(own, before)
+
+
+@njit(cache=True, inline="always")
+def weight_across(T, link_z, j, flow):
+    """Return `downstream_weight` on the link j -> j+1 in z, for the temperatures T (m,) of a column.
+
+    It is zero if the link upstream would lie outside the film.
+    """
+    up, weight = j - 1 if flow > 0.0 else j + 1, 0.0
+    if flow != 0.0 and 0 <= up < len(T) - 1:
+        weight = downstream_weight((T[j + 1] - T[j]) * link_z[j], (T[up + 1] - T[up]) * link_z[up])
+    return weight
+
+
+@njit(cache=True, inline="always")
+def downstream_weight(own, before):
+    """Weight of the temperature downstream of a link, from the slopes on the link and on the one upstream.
+
+    With the ratio r of the slope upstream to the slope on the link, the weight is a half for r >= 1 and
+    ``2 r / (1 + r)^2`` for a smaller r, with a continuous slope at r = 1. It is zero at extrema, where r < 0.
+    """
+    weight = 0.0
+    if own * before > 0.0:
+        weight = 0.5 if abs(before) >= abs(own) else 2.0 * own * before / (own + before) ** 2
+    return weight
 
 
 def passed(

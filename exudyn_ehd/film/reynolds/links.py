@@ -37,10 +37,11 @@ oil in them.
 
 The fill of a vertex would carry the oil with an error of first order in the length of a link. In time it would smooth
 the oil content along theta, most where the oil moves slowly against the cavity, as in whirl at half of the speed. So
-``late`` also holds the rise of the fill from the vertex to the middles of the links downstream, with the limiter
-`downstream_weight`. It is that at the start of the step, so that the equations stay linear. Between -w late and
-w (1 - late), it leaves the fill of the flow between 0 and 1. A steady film needs no rise: its flows are exact, and only
-the fills are those of half a link downstream.
+``late`` also holds the rise of the fill from the vertex to the middles of the links downstream, with the limiter of
+van Leer (J. Computational Physics 14 (1974) 361). It is that at the start of the step, so that the equations stay
+linear. Between -0.45 late and 0.45 (1 - late) it leaves the fill of the flow between 0 and 1. The equations of a steady
+film contain only the fills of its flows. Those of the vertices follow from them (`move_upstream`), so that a run which
+begins with a steady film stays there. The shear in a cavity has the fills of the flows in both cases.
 
 Differences and sums over the links
 -----------------------------------
@@ -55,7 +56,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.compilation import FAST, I0, I1, U0, U1, unsigned
+from exudyn_ehd.compilation import FAST, I0, I1, TOLERANCE, U0, U1, unsigned
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.balance import next_values
 
@@ -312,6 +313,8 @@ def linear_residual(links, p, out):
         residual[c] += kz[c - U1] * (x[c - U1] - x[c]) - kz[c] * (x[c] - x[on])
 
 
+# Largest number of sweeps to the fills of the vertices of a steady film; most films take 50 to 150.
+MOST_SWEEPS = 200
 # Largest w. The value 0.5 would be of exactly second order, but would not damp short waves; smaller ones damp more and
 # are less accurate.
 LARGEST_LAG = 0.45
@@ -327,66 +330,46 @@ def _leaves(fx, fz, i, j):
 
 
 @njit(cache=True, inline="always")
-def weight_along(T, link_x, i, flow):
-    """Return `downstream_weight` on the link i -> i+1 in theta, for the values T (n,) of a row.
+def _rise_along(fill, before, here, after, link_before, link_after, in_cells):
+    """Return the rise of the fill from a vertex to the middle of the link behind it, by van Leer's limiter.
 
-    It is zero if there is no link upstream, as at the edge of an arc.
+    It is half a link times the harmonic mean of the slopes on both sides, and 0 at extrema. With a line inside the
+    cells it is 0 also behind a full vertex, so that the fill stays below that at which a vertex has a line. ``link``:
+    inverse lengths.
     """
-    n = len(T)
-    up = (i - 1 if flow > 0.0 else i + 1) % n
-    own, before = (T[(i + 1) % n] - T[i]) * link_x[i], (T[(up + 1) % n] - T[up]) * link_x[up]
-    return downstream_weight(own, before)
+    back, ahead = (fill[here] - fill[before]) * link_before, (fill[after] - fill[here]) * link_after
+    if not back * ahead > 0.0 or (in_cells and fill[before] >= 1.0):
+        return 0.0
+    return back * ahead / ((back + ahead) * link_after)
 
 
 @njit(cache=True, inline="always")
-def weight_across(T, link_z, j, flow):
-    """Return `downstream_weight` on the link j -> j+1 in z, for the values T (m,) of a column.
-
-    It is zero if the link upstream would lie outside the film.
-    """
-    up, weight = j - 1 if flow > 0.0 else j + 1, 0.0
-    if flow != 0.0 and 0 <= up < len(T) - 1:
-        weight = downstream_weight((T[j + 1] - T[j]) * link_z[j], (T[up + 1] - T[up]) * link_z[up])
-    return weight
-
-
-@njit(cache=True, inline="always")
-def downstream_weight(own, before):
-    """Weight of the value downstream of a link, from the slopes on the link and on the one upstream.
-
-    With the ratio r of the slope upstream to the slope on the link, the weight is a half for r >= 1 and
-    ``2 r / (1 + r)^2`` for a smaller r, with a continuous slope at r = 1. It is zero at extrema, where r < 0.
-    """
-    weight = 0.0
-    if own * before > 0.0:
-        weight = 0.5 if abs(before) >= abs(own) else 2.0 * own * before / (own + before) ** 2
-    return weight
-
-
-@njit(cache=True, inline="always")
-def _rise(fx, fz, fill, link_x, link_z, i, j):
-    """Return the rise of the fill from a vertex to the middles of the links downstream, weighted by their flows."""
-    n, m = fill.shape
-    own, leaves, rise = fill[i, j], 0.0, 0.0
-    down, up = (i + 1 if i + 1 < n else 0), (i - 1 if i > 0 else n - 1)
-    for link, to in ((i, down), (up, up)):
-        flow = fx[link, j]
-        if (flow > 0.0) == (link == i):
-            leaves += abs(flow)
-            rise += abs(flow) * weight_along(fill[:, j], link_x, link, flow) * (fill[to, j] - own)
-    for link, to in ((j, j + 1), (j - 1, j - 1)):
-        flow = fz[i, link] if 0 <= link < m - 1 else 0.0
-        if flow != 0.0 and (flow > 0.0) == (link == j):
-            leaves += abs(flow)
-            rise += abs(flow) * weight_across(fill[i], link_z, link, flow) * (fill[i, to] - own)
-    return rise / leaves if leaves > 0.0 else 0.0
+def _rise(fx, fz, fill, links, in_cells, i, j):
+    """Return the rise of the fill from a vertex to the middles of the links downstream, weighted by their flows; within
+    the bounds of `lag_void`."""
+    (n, m), (link_x, link_z) = fill.shape, links
+    on, up = (i + 1 if i + 1 < n else 0), (i - 1 if i > 0 else n - 1)
+    row, column, total = fill[:, j], fill[i], 0.0
+    if fx[i, j] > 0.0:
+        total += fx[i, j] * _rise_along(row, up, i, on, link_x[up], link_x[i], in_cells)
+    if fx[up, j] < 0.0:
+        total -= fx[up, j] * _rise_along(row, on, i, up, link_x[i], link_x[up], in_cells)
+    if 0 < j < m - 1 and fz[i, j] > 0.0:
+        total += fz[i, j] * _rise_along(column, j - 1, j, j + 1, link_z[j - 1], link_z[j], in_cells)
+    if 0 < j < m - 1 and fz[i, j - 1] < 0.0:
+        total -= fz[i, j - 1] * _rise_along(column, j + 1, j, j - 1, link_z[j], link_z[j - 1], in_cells)
+    leaves, own = _leaves(fx, fz, i, j), fill[i, j]
+    return min(max(total / leaves, -LARGEST_LAG * own), LARGEST_LAG * (1.0 - own)) if leaves > 0.0 else 0.0
 
 
 @njit(cache=True)
-def outflow_of(fx, fz, H, H_t, area, links, fill):
+def outflow_of(fx, fz, H, H_t, area, links, in_cells, fill):
     """Return fields (4, n, m) for the next step: fill; rate of the gap over the gap, 1/s; Couette outflow of a full
-    film over its volume, 1/s; rise of the fill to the middles of the links downstream. ``links``: inverse
-    lengths (n,) and (m - 1,) of the links in theta and z."""
+    film over its volume, 1/s; rise of the fill to the middles of the links downstream.
+
+    ``links``: inverse lengths (n,) and (m - 1,) of the links in theta and z; ``in_cells``: whether rupture lines lie
+    inside the cells. A vertex with a line has the fill 1.
+    """
     n, m = fill.shape
     out = np.empty((4, n, m))
     for i in range(n):
@@ -395,36 +378,59 @@ def outflow_of(fx, fz, H, H_t, area, links, fill):
             out[0, i, j] = fill[i, j]
             out[1, i, j] = H_t[i, j] / H[i, j]
             out[2, i, j] = _leaves(fx, fz, i, j) / volume if volume > 0.0 else 0.0
-            out[3, i, j] = _rise(fx, fz, fill, links[0], links[1], i, j)
+            out[3, i, j] = _rise(fx, fz, fill, links, in_cells, i, j)
     return out
 
 
 @njit(cache=True)
-def hold_back(fields, content, late):
-    """Set ``prompt`` to 1 and ``late`` to 0 where ``late`` would carry away more than the content at the start of the
-    step, since flows have grown; ``content`` (n, m): over the step, 1/s."""
-    fx, fz, area, prompt = fields[2], fields[3], fields[7], fields[8]
-    for i in range(late.shape[0]):
-        for j in range(late.shape[1]):
-            if late[i, j] > 0.0 and late[i, j] * _leaves(fx, fz, i, j) > area[i, j] * content[i, j]:
-                prompt[i, j], late[i, j] = 1.0, 0.0
+def move_upstream(fx, fz, links, in_cells, out):
+    """Change fill and rise in the result (4, n, m) of `outflow_of`, from the fills of a steady film, which are those
+    of its flows, to fills of the vertices; their sum is kept."""
+    fill, rise = out[0], out[3]
+    (n, m), flows, change = fill.shape, fill.copy(), 1.0
+    for _ in range(MOST_SWEEPS):
+        for i in range(n):
+            for j in range(m):
+                if flows[i, j] < 1.0:
+                    fill[i, j] = flows[i, j] - rise[i, j]
+        if change < TOLERANCE:
+            break
+        change = 0.0
+        for i in range(n):
+            for j in range(m):
+                new = _rise(fx, fz, fill, links, in_cells, i, j)
+                if flows[i, j] < 1.0:
+                    change = max(change, abs(new - rise[i, j]))
+                    rise[i, j] = new
 
 
 @njit(cache=True)
-def lag_void(outflow, step, fixed, prompt_out, late_out):
-    """Set ``prompt = 1 - w`` and ``w late`` (n, m) of a step from the result of `outflow_of` at its start; 1 and 0 at
-    vertices that were full."""
+def hold_back(fields, content, late, rise):
+    """Set ``prompt`` to 1, ``late`` and ``rise`` to 0 where ``late`` without the rise would carry away more than the
+    content at the start of the step, since flows have grown; ``content`` (n, m): over the step, 1/s."""
+    fx, fz, area, prompt = fields[2], fields[3], fields[7], fields[8]
+    for i in range(late.shape[0]):
+        for j in range(late.shape[1]):
+            held = late[i, j] - rise[i, j]
+            if held > 0.0 and held * _leaves(fx, fz, i, j) > area[i, j] * content[i, j]:
+                prompt[i, j], late[i, j], rise[i, j] = 1.0, 0.0, 0.0
+
+
+@njit(cache=True)
+def lag_void(outflow, step, fixed, prompt_out, late_out, rise_out):
+    """Set ``prompt = 1 - w``, ``late`` and the rise of the fill in it (n, m) for a step, from the result of
+    `outflow_of` at its start; 1, 0 and 0 at vertices that were full."""
     n, m = fixed.shape
     for i in range(n):
         for j in range(m):
             fill, grows, drains = outflow[0, i, j], step * outflow[1, i, j], step * outflow[2, i, j]
-            prompt_out[i, j], late_out[i, j] = 1.0, 0.0
+            prompt_out[i, j], late_out[i, j], rise_out[i, j] = 1.0, 0.0, 0.0
             if fixed[i, j] or fill >= 1.0 or not min(fill, fill + grows) > 0.0:
                 continue
             late = (fill + grows) / (1.0 + grows)
             w = min(LARGEST_LAG, late / fill, fill / late * min(1.0, LARGEST_OUTFLOW / max(drains, LARGEST_OUTFLOW)))
-            prompt_out[i, j] = 1.0 - w
-            late_out[i, j] = w * late + min(max(outflow[3, i, j], -w * late), w * (1.0 - late))
+            rise_out[i, j] = min(max(outflow[3, i, j], -LARGEST_LAG * late), LARGEST_LAG * (1.0 - late))
+            prompt_out[i, j], late_out[i, j] = 1.0 - w, w * late + rise_out[i, j]
 
 
 def following(P: np.ndarray) -> np.ndarray:

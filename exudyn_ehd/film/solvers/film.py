@@ -42,6 +42,7 @@ from exudyn_ehd.film.reynolds.links import (
     lag_void,
     link_flux,
     link_metric,
+    move_upstream,
     outflow_of,
     right_hand_side,
     set_links,
@@ -85,7 +86,8 @@ def ends_of_cavities(s: FilmSystem, conserves_mass: bool) -> list[tuple[int, int
 def shear_share(s: FilmSystem, active: np.ndarray, closure: Closure) -> np.ndarray:
     """Shear at each vertex over that of a full film (n, m)."""
     out = np.empty(s.fixed.shape)
-    _share(s.fill, active, s.fixed, s.pressure, s.cavity_pressure, closure.conserves_mass, closure.cavity_shear, out)
+    fill = s.fill + s.rise * (s.fill < 1.0) if closure.conserves_mass else s.fill
+    _share(fill, active, s.fixed, s.pressure, s.cavity_pressure, closure.conserves_mass, closure.cavity_shear, out)
     return out
 
 
@@ -337,41 +339,43 @@ class FilmArrays:
             s.inverse_step = self.inverse_instant() if s.instant else 1.0 / step
             s.mass_old[:] = mass_old
 
-    def stored(self, mass: np.ndarray | None, step: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return the void at the end of the last solution's step, and the sum of oil flows: ``mass`` at its start plus
-        the change of content in the step."""
-        content = self.content
+    def memory(self, mass: np.ndarray | None, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return what the next step needs of the last solution and its step, (n, m), (n, m) and (4, n, m).
+
+        The void at the end of the step; the sum of oil flows: ``mass`` at its start plus the change of content in the
+        step; fields of `exudyn_ehd.film.reynolds.links`. There a vertex at a line inside the cells counts as full,
+        since the flows out of it follow its pressure, not its fill.
+        """
+        s, line, content = self.system, self.oil_line, self.content
+        links = self.grid.link_x, self.grid.link_z
+        fill = s.fill if line is None else np.where(line.s < 1.0, 1.0, s.fill)
+        outflow = outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, links, line is not None, fill)
+        if s.inverse_step == 0.0:
+            move_upstream(s.fx, s.fz, links, line is not None, outflow)
+            content = content + self.rho * (outflow[0] - fill) * self.H
         known = mass is not None and step > 0.0
-        return self.H - content, mass + content - self.system.mass_old if known else content
+        return self.H - content, mass + content - s.mass_old if known else content, outflow
 
     def flooded(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the results of `stored` and `outflow` for a full film at the present gaps, without flows so far."""
+        """Return the result of `memory` for a full film at the present gaps, without flows so far."""
         return self.nothing, self.H.copy(), np.array([self.ones, self.nothing, self.nothing, self.nothing])
 
     def lag(self, outflow: np.ndarray | None, step: float) -> None:
         """Average the next solution's flows out of cavities over its step, from ``outflow`` (4, n, m) at its start;
-        None, or a step of 0: no average."""
+        None: no average."""
         s = self.system
-        if outflow is not None and step > 0.0:
-            lag_void(outflow, step, s.fixed, s.prompt, s.late)
+        if outflow is not None:
+            lag_void(outflow, step, s.fixed, s.prompt, s.late, s.rise)
             self.lagging = True
         elif self.lagging:
-            s.prompt[:], s.late[:] = 1.0, 0.0
+            s.prompt[:], s.late[:], s.rise[:] = 1.0, 0.0, 0.0
             self.lagging = False
 
     def hold_back(self) -> None:
         """Do not average flows that would carry away more than the start-of-step content, for the present links."""
+        s = self.system
         if self.lagging:
-            hold_back(self.system.fields, self.system.inverse_step * self.system.mass_old, self.system.late)
-
-    def outflow(self) -> np.ndarray:
-        """Fields (4, n, m) of the last solution that `exudyn_ehd.film.reynolds.links` needs in the next step.
-
-        A vertex at a line inside the cells counts as full, since the flows out of it follow its pressure, not its fill.
-        """
-        s, line = self.system, self.oil_line
-        fill = s.fill if line is None else np.where(line.s < 1.0, 1.0, s.fill)
-        return outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, (self.grid.link_x, self.grid.link_z), fill)
+            hold_back(s.fields, s.inverse_step * s.mass_old, s.late, s.rise)
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette flows of the links in theta and z, and rate of a full film's content per area, all (n, m); mass flows

@@ -128,8 +128,8 @@ class FilmSolver(FilmAnswers):
         outflow: np.ndarray | None,
         step: float,
     ) -> tuple[Status, int]:
-        """Solve as `solve` over a step, for ``void`` and ``outflow`` at its start, see `stored` and
-        `FilmArrays.outflow`; None: a steady film."""
+        """Solve as `solve` over a step, for ``void`` and ``outflow`` at its start, see
+        `FilmArrays.memory`; None: a steady film."""
         self.system.cavity_pressure = cavity_pressure
         kept = None if void is None else self.keep(void, step)
         self.lag(outflow, step)

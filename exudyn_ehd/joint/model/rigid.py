@@ -260,12 +260,12 @@ class BearingModel:
             return None
         p, s, effects = self.parts, self.solver, self.effects
         old = History() if film.history is None else film.history
-        void, mass = s.stored(old.mass, film.step) if self.remembers_mass else (None, None)
+        void, mass, outflow = s.memory(old.mass, film.step) if self.remembers_mass else (None, None, None)
         new = replace(
             History() if effects.thermal is None else effects.thermal.memory(film),
             void=void,
             mass=mass,
-            outflow=s.outflow() if self.remembers_mass else None,
+            outflow=outflow,
             wear=None if effects.wear is None else effects.wear.grown(film),
             deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
             pockets=s.pockets,

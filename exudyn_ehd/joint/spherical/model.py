@@ -135,8 +135,8 @@ class SphericalModel(SphericalFilm):
         temperatures = History() if thermal is None else thermal.memory(cast(SolvedFilm, film))
         if not self.remembers_mass:
             return temperatures
-        void, mass = s.stored(film.history.mass, film.step)
-        return replace(temperatures, void=void, mass=mass, outflow=s.outflow())
+        void, mass, outflow = s.memory(film.history.mass, film.step)
+        return replace(temperatures, void=void, mass=mass, outflow=outflow)
 
     def is_at_rest(self, motion: np.ndarray) -> bool:
         """Return whether a film at this motion has no source, and would rupture under any small source."""
