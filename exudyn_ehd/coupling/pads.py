@@ -186,7 +186,8 @@ class TiltingPadJoint:
         """Let the next run start in the equilibrium under a steady load: journal and pads are moved there.
 
         Call it after Assemble. The journal's node is moved across the axis, and its velocity across the axis is set to
-        that of the housing; its spin and its tilt do not change. The weight of the pads is omitted.
+        that of the housing; its spin and its tilt do not change. The weight of the pads is omitted. Films with a
+        thermal option start with its initial temperature.
 
         Parameters
         ----------

@@ -26,9 +26,9 @@ from exudyn_ehd.film.loads import (
     pressure_integrals,
     wrench_gradient,
 )
-from exudyn_ehd.film.reynolds.balance import link_derivatives
+from exudyn_ehd.film.reynolds.balance import link_derivatives, right_hand_side
 from exudyn_ehd.film.reynolds.gap import add_columns, functional_gradients, link_rows, rigid_gaps
-from exudyn_ehd.film.reynolds.links import right_hand_side, set_links
+from exudyn_ehd.film.reynolds.links import set_links
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.matrix import factor_symmetric
 from exudyn_ehd.film.solvers.newton import solve_rupturing

@@ -80,6 +80,9 @@ class History:
     leaving : (2,) array or None
         Temperature of the oil that leaves at the lower and at the upper end, K; only with a temperature field and films
         on end faces.
+    growth : (n, m) array or None
+        Scaled rate, 1/s, by which wear and growing walls have changed the gap in the last step (mass-conserving
+        closures). The next step squeezes or draws in oil at this rate.
     """
 
     void: np.ndarray | None = None
@@ -93,6 +96,7 @@ class History:
     pockets: np.ndarray | None = None
     sump: float | None = None
     leaving: np.ndarray | None = None
+    growth: np.ndarray | None = None
 
 
 class ContactFields:

@@ -16,8 +16,9 @@ from numba import njit
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.loads import pressure_integrals
+from exudyn_ehd.film.reynolds.balance import right_hand_side
 from exudyn_ehd.film.reynolds.gap import rigid_gap
-from exudyn_ehd.film.reynolds.links import right_hand_side, set_links
+from exudyn_ehd.film.reynolds.links import set_links
 from exudyn_ehd.joint.model.build import build_model
 from tests.benchmarks.accuracy.costs import effects
 

@@ -6,8 +6,9 @@ import time
 import pytest
 
 import exudyn_ehd as ehd
+from exudyn_ehd.film.reynolds.balance import right_hand_side
 from exudyn_ehd.film.reynolds.gap import rigid_gap
-from exudyn_ehd.film.reynolds.links import right_hand_side, set_links
+from exudyn_ehd.film.reynolds.links import set_links
 from exudyn_ehd.film.solvers.sets import solve_sets
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.loads import film_loads

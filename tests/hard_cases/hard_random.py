@@ -33,8 +33,7 @@ import numpy as np
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.lubricant.pressure_viscosity import LARGEST_PRESSURE
-from exudyn_ehd.film.reynolds.balance import film_balance
-from exudyn_ehd.film.reynolds.links import linear_residual
+from exudyn_ehd.film.reynolds.balance import film_balance, linear_residual
 from exudyn_ehd.joint.model.build import build_model
 
 RADIUS, CLEARANCE, VISCOSITY = 0.01, 2e-5, 0.04

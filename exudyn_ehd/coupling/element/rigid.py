@@ -5,13 +5,15 @@ reference values) and q_t of those nodes, housing's first, and return the genera
 the derivative of -Q. The film is evaluated once per state. `accepted_steps` records accepted steps, triggered by the
 force user function alone; `failures` has the messages for films that cannot be evaluated.
 
-Films on end faces are evaluated together with the journal's film. They have the temperature in its memory, have no
-other memory, and use the velocities as rates. Their heat is part of the heat balance of accepted steps. Their wrench
-acts on journal and housing, also if the journal's film acts on a flexible bush.
+Films on end faces are evaluated together with the journal's film. If that has one temperature, they have the same;
+with a temperature field they have that of the oil that left it at the start of the step. They have no other memory, and
+use the velocities as rates. Their heat is part of the heat balance of accepted steps. Their wrench acts on journal and
+housing, also if the journal's film acts on a flexible bush.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 
@@ -174,7 +176,10 @@ class FilmElement:
             spin = relative.angle_of(*self.frames) if self.model.needs_spin else 0.0
             trial.take(self.model.evaluate(motion, memory, step, spin))
             if self.faces is not None:
-                trial.take_faces(self.faces.evaluate(self.collars.motion_of(*self.frames), memory))
+                film, seen = getattr(trial.evaluation, "film", None), memory
+                if film is not None and seen is not None:
+                    seen = dataclasses.replace(seen, temperature=film.temperature)
+                trial.take_faces(self.faces.evaluate(self.collars.motion_of(*self.frames), seen))
             self.evaluations += 1
         self.last = trial
         return trial

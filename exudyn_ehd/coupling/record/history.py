@@ -174,7 +174,7 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
     peak_temperature : (n,) [K]
         Highest temperature in the film. Absolute; nan without ``thermal``.
     sump_temperature : (n,) [K]
-        Temperature of the oil that enters from a `Sump`. Absolute; nan without one.
+        Temperature of the oil that enters from a `Sump`, at the start of the row's step. Absolute; nan without one.
     minimum_gap_angle : (n,) [rad]
         Angle at which the film is thinnest. From x about z, 0 to 2 pi.
     minimum_gap_z : (n,) [m]
@@ -188,8 +188,8 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
         Power that a liner and touching surfaces take up as elastic energy. Negative where they give it back; not in
         ``power_loss``.
     bush_temperature : (n,) [K]
-        Mean temperature of the bore's surface. Absolute; nan unless a wall conducts (`Conduction`) or the film has two
-        temperatures across it.
+        Mean temperature of the bore's surface, of walls that conduct (`Conduction`) at the start of the row's step.
+        Absolute; nan unless a wall conducts or the film has two temperatures across it.
     journal_temperature : (n,) [K]
         Mean temperature of the journal's surface. As ``bush_temperature``.
     clearance : (n,) [m]

@@ -32,8 +32,9 @@ from exudyn_ehd.film.banded.factors import assemble_band, factor_band, number_ce
 from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import Workspace, dense_band
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.reynolds.balance import linear_residual
 from exudyn_ehd.film.reynolds.gap import Gradients
-from exudyn_ehd.film.reynolds.links import LinkFlux, linear_residual
+from exudyn_ehd.film.reynolds.links import LinkFlux
 
 
 @njit(cache=True, nogil=True)

@@ -135,21 +135,26 @@ def end_flows_around(turned, pressed, stored, squeezed, full, flow_out, entering
         Where the end pressure is above the cavity pressure and the film next to it is full.
     """
     n, way = turned.size, 1 if turned.sum() >= 0.0 else -1
-    start = np.argmin(pressed)
-    carried = abs(turned[start - 1 if way > 0 else start])
-    # the second turn begins with the flow at the end of the first one
+    least, largest, change, carried = 0.0, np.inf, 0.0, 0.0
     for k in range(2 * n):
-        i = (start + way * k) % n
+        i = way * k % n
         out, into = (i, i - 1) if way > 0 else (i - 1, i)
         whole, q = abs(turned[out]), pressed[i]
         B = whole - abs(turned[into]) + squeezed[i]
         most = 0.0
         if full[i] or (q > 0.0 and q >= B):
-            most = q + B
+            most = max(q + B, 0.0)
         elif q > 0.0:
             most = 2.0 * np.sqrt(q * B)
+        if k < n:
+            # a turn adds the same to every flow, but for the limits
+            gain = most - q - stored[i]
+            change += gain
+            least, largest = min(max(least + gain, 0.0), whole), min(max(largest + gain, 0.0), whole)
+            carried = largest if change > 0.0 else least
+            continue
         needed = whole - carried + q + stored[i]
-        entering = min(needed, max(most, 0.0))
+        entering = min(needed, most)
         carried = whole - needed + entering
         if carried < 0.0:
             entering -= carried

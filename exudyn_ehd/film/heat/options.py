@@ -262,10 +262,11 @@ class FilmEnergy(Checked):
 
     In time: backward differences of second order over the accepted steps; the first step, and steps more than 2.4 times
     as long as the one before, backward Euler. The viscosity of a step is that of the temperatures that are extrapolated
-    to its end. So is its heat, unless the step is longer than the exchange of the oil takes. Where the oil passes more
-    than a column in a step, its transport is of first order in part: with steps of some turns the temperatures settle
-    up to 1 % of their range away from the steady ones. Walls and sumps: backward Euler. `steady` and `equilibrium` use
-    the steady field, a static solution of a multibody model the initial temperature.
+    to its end, but never to below the coldest temperature around. So is its heat, unless the step is longer than the
+    exchange of the oil takes. Where the oil passes more than a column in a step, its transport is of first order in
+    part: with steps of three turns the temperatures of fed films settle up to 27 % of their range away from the steady
+    ones at single vertices, up to 5 % in the mean, forces up to 6 %. Walls and sumps: backward Euler. `steady` and
+    `equilibrium` use the steady field, a static solution of a multibody model the initial temperature.
 
     Errors by the steps: with 120 steps per period of the load 0.01 to 0.7 % of the film thickness in eleven of thirteen
     random scenes that heat by 3 to 53 K, 1.8 and 6.5 % in the others; they fall with the square of the step

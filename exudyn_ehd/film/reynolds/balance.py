@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.compilation import FAST, I0, I1
+from exudyn_ehd.compilation import FAST, I0, I1, U0, U1, unsigned
 
 
 class FilmTerms(NamedTuple):
@@ -303,3 +303,38 @@ def link_derivatives(P, H, HF, E, up, laws, metric, vx, vz, by, by_speed):
     E, h_on = flat(E), next_values(h, I1)
     _derive_links(I0, p, next_values(p, m), h_x, h_x, E, _next_or_none(E, m), laws, up, width, vx, *out)
     _derive_links(I1, p, next_values(p, I1), h, h_on, E, _next_or_none(E, I1), laws, up, width, vz, *out)
+
+
+@njit(cache=True, fastmath=FAST)
+def right_hand_side(fx, fz, squeeze, H_t, area, b_out):
+    """Set b: net Couette inflow of every control volume, less the storage ``dH/dt area`` if ``squeeze``."""
+    n, m = fx.shape
+    for i in range(n):
+        for j in range(m):
+            # nothing flows over the last row's links in z
+            b_out[i, j] = fx[i - 1, j] - fx[i, j] + fz[i, j - 1] - fz[i, j]
+            if squeeze:
+                b_out[i, j] -= H_t[i, j] * area[i, j]
+
+
+@njit(cache=True, fastmath=FAST)
+def linear_residual(links, p, out):
+    """Set the residual ``b - A P`` (n, m) in ``out``, for links (kx, kz, b) and pressures p.
+
+    At fixed vertices it is minus the flow that they feed into the film.
+    """
+    kx, kz, b = links[0].reshape(-1), links[1].reshape(-1), links[2].reshape(-1)
+    x, residual, m, size = p.reshape(-1), out.reshape(-1), unsigned(p.shape[1]), unsigned(p.size)
+    last = size - m
+    for c in range(m):
+        # nothing flows over the last row's links
+        before, far = (c if c > U0 else size) - U1, last + c
+        residual[c] = b[c] - kx[c] * (x[c] - x[c + m]) + kx[far] * (x[far] - x[c])
+        residual[c] += kz[before] * (x[before] - x[c]) - kz[c] * (x[c] - x[c + U1])
+    for c in range(m, last):
+        taken = kx[c] * (x[c] - x[c + m]) - kx[c - m] * (x[c - m] - x[c])
+        residual[c] = b[c] - taken - kz[c] * (x[c] - x[c + U1]) + kz[c - U1] * (x[c - U1] - x[c])
+    for c in range(last, size):
+        on, far = c + U1 if c + U1 < size else U0, c - last
+        residual[c] = b[c] - kx[c] * (x[c] - x[far]) + kx[c - m] * (x[c - m] - x[c])
+        residual[c] += kz[c - U1] * (x[c - U1] - x[c]) - kz[c] * (x[c] - x[on])

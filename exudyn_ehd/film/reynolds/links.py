@@ -32,8 +32,8 @@ stay linear, and its derivatives exact.
 
 If a step carries C times the content of a vertex away, a void without inflow is multiplied by
 ``(1 - w C) / (1 + (1 - w) C)``. For ``w C < 1`` this lies between 0 and 1, so that the void decays without a change of
-sign. For any C, ``late`` carries at most half of the content away. w is 0 in gaps that open or close by more than the
-oil in them.
+sign. For any C, w ``late`` carries less than half of the content away. w is 0 in gaps that open or close by more than
+the oil in them.
 
 The fill of a vertex would carry the oil with an error of first order in the length of a link. In time it would smooth
 the oil content along theta, most where the oil moves slowly against the cavity, as in whirl at half of the speed. So
@@ -56,7 +56,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.compilation import FAST, I0, I1, TOLERANCE, U0, U1, unsigned
+from exudyn_ehd.compilation import FAST, I0, I1, TOLERANCE
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.balance import next_values
 
@@ -278,48 +278,11 @@ def set_links(H, HF, flow, metric, vx, vz, terms):
     _set_along(I1, h, next_values(h, I1), flow, by, vz, out)
 
 
-@njit(cache=True, fastmath=FAST)
-def right_hand_side(fx, fz, squeeze, H_t, area, b_out):
-    """Set b: net Couette inflow of every control volume, less the storage ``dH/dt area`` if ``squeeze``."""
-    n, m = fx.shape
-    for i in range(n):
-        for j in range(m):
-            # nothing flows over the last row's links in z
-            b_out[i, j] = fx[i - 1, j] - fx[i, j] + fz[i, j - 1] - fz[i, j]
-            if squeeze:
-                b_out[i, j] -= H_t[i, j] * area[i, j]
-
-
-@njit(cache=True, fastmath=FAST)
-def linear_residual(links, p, out):
-    """Set the residual ``b - A P`` (n, m) in ``out``, for links (kx, kz, b) and pressures p.
-
-    At fixed vertices it is minus the flow that they feed into the film.
-    """
-    kx, kz, b = links[0].reshape(-1), links[1].reshape(-1), links[2].reshape(-1)
-    x, residual, m, size = p.reshape(-1), out.reshape(-1), unsigned(p.shape[1]), unsigned(p.size)
-    last = size - m
-    for c in range(m):
-        # nothing flows over the last row's links
-        before, far = (c if c > U0 else size) - U1, last + c
-        residual[c] = b[c] - kx[c] * (x[c] - x[c + m]) + kx[far] * (x[far] - x[c])
-        residual[c] += kz[before] * (x[before] - x[c]) - kz[c] * (x[c] - x[c + U1])
-    for c in range(m, last):
-        taken = kx[c] * (x[c] - x[c + m]) - kx[c - m] * (x[c - m] - x[c])
-        residual[c] = b[c] - taken - kz[c] * (x[c] - x[c + U1]) + kz[c - U1] * (x[c - U1] - x[c])
-    for c in range(last, size):
-        on, far = c + U1 if c + U1 < size else U0, c - last
-        residual[c] = b[c] - kx[c] * (x[c] - x[far]) + kx[c - m] * (x[c - m] - x[c])
-        residual[c] += kz[c - U1] * (x[c - U1] - x[c]) - kz[c] * (x[c] - x[on])
-
-
 # Largest number of sweeps to the fills of the vertices of a steady film; most films take 50 to 150.
 MOST_SWEEPS = 200
-# Largest w. The value 0.5 would be of exactly second order, but would not damp short waves; smaller ones damp more and
-# are less accurate.
+# Largest w, and largest part of a vertex's content that ``late`` may carry away in a step. The value 0.5 would be of
+# exactly second order, but would not damp short waves; smaller ones damp more and are less accurate.
 LARGEST_LAG = 0.45
-# Largest part of a vertex's content that ``late`` may carry away in a step; larger values allow negative fills.
-LARGEST_OUTFLOW = 0.5
 
 
 @njit(cache=True, inline="always")
@@ -428,7 +391,7 @@ def lag_void(outflow, step, fixed, prompt_out, late_out, rise_out):
             if fixed[i, j] or fill >= 1.0 or not min(fill, fill + grows) > 0.0:
                 continue
             late = (fill + grows) / (1.0 + grows)
-            w = min(LARGEST_LAG, late / fill, fill / late * min(1.0, LARGEST_OUTFLOW / max(drains, LARGEST_OUTFLOW)))
+            w = min(LARGEST_LAG, late / fill, fill / late * min(1.0, LARGEST_LAG / max(drains, LARGEST_LAG)))
             rise_out[i, j] = min(max(outflow[3, i, j], -LARGEST_LAG * late), LARGEST_LAG * (1.0 - late))
             prompt_out[i, j], late_out[i, j] = 1.0 - w, w * late + rise_out[i, j]
 

@@ -14,9 +14,9 @@ from exudyn_ehd.film.cavitation.rupture_line import AtLine, undeformed
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, link_derivatives
+from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, linear_residual, link_derivatives
 from exudyn_ehd.film.reynolds.gap import Gradients, join, link_rows
-from exudyn_ehd.film.reynolds.links import ShearFactor, linear_residual
+from exudyn_ehd.film.reynolds.links import ShearFactor
 from exudyn_ehd.film.solvers.film import FilmArrays, end_films_of_areas
 from exudyn_ehd.film.solvers.liner import LinerFilm
 from exudyn_ehd.film.solvers.sets import factor_solution

@@ -35,7 +35,7 @@ from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL, RUPTURE
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityField
 from exudyn_ehd.film.lubricant.pressure_viscosity import law_at
-from exudyn_ehd.film.reynolds.balance import upstream
+from exudyn_ehd.film.reynolds.balance import right_hand_side, upstream
 from exudyn_ehd.film.reynolds.links import (
     FluxEffect,
     hold_back,
@@ -44,7 +44,6 @@ from exudyn_ehd.film.reynolds.links import (
     link_metric,
     move_upstream,
     outflow_of,
-    right_hand_side,
     set_links,
 )
 from exudyn_ehd.film.supply.restrictors import seal_ends

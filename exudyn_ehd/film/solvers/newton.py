@@ -58,8 +58,7 @@ from exudyn_ehd.film.cavitation.states import (
     subtract_sink,
 )
 from exudyn_ehd.film.lubricant.density import density_at
-from exudyn_ehd.film.reynolds.balance import film_balance, terms_of
-from exudyn_ehd.film.reynolds.links import linear_residual
+from exudyn_ehd.film.reynolds.balance import film_balance, linear_residual, terms_of
 from exudyn_ehd.film.solvers.matrix import factor_film, solve_step
 from exudyn_ehd.film.solvers.winkler import plain_residual
 from exudyn_ehd.status import SMALL

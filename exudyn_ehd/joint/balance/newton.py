@@ -163,9 +163,11 @@ class Balance:
             film = evaluation.heat_with(beside.heat) or film
         thinner, change = 1.0, np.zeros(0)
         if thermal is not None:
-            thermal.upwind = self.rough
-            change = thermal.steady_temperature(film) - T
-            thermal.upwind = False
+            try:
+                thermal.upwind = self.rough
+                change = thermal.steady_temperature(film) - T
+            finally:
+                thermal.upwind = False
             size = float(np.abs(change).max())
             if not size < math.inf:
                 raise FilmError(f"{self.where}: the film is heated, and its heat has no way out; {WAY_OUT}")
@@ -239,7 +241,7 @@ class Balance:
             if self.is_balanced(here, tolerance, SETTLED) or spent:
                 break
             if idle > PATIENCE:
-                if not here.change.size or damping < WEAKEST or (self.free and not resistance):
+                if not here.change.size or damping < WEAKEST:
                     break
                 here, past, idle, damping = best, [], 0, 0.6 * damping
             step = self._step(here, resistance)

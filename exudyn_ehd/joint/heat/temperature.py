@@ -17,6 +17,7 @@ from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal, Sump, Walls,
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.joint.heat.power import heat_and_exchange
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
+from exudyn_ehd.status import SMALL
 
 # Largest temperature coefficient of the viscosity of any oil, 1/K. If the heat times this is below what the oil stores
 # per kelvin, the heat is not linearised. Larger: the coefficient is computed more often.
@@ -50,9 +51,10 @@ class OilTemperature(abc.ABC):
     """Temperature of the film, stored in the history of accepted steps.
 
     The film of a step h has the temperature T + h T' that is extrapolated from its start with the rate T' of the step
-    before, so that force and tangent do not depend on the temperature at the end of the step. Where the rate has
-    changed its sign in the step before, the film has the temperature T: so temperatures that swing from step to step
-    are damped.
+    before, so that force and tangent do not depend on the temperature at the end of the step. A fall is extrapolated as
+    ``D (exp(h T' / D) - 1)``, with the rise D of T over the coldest temperature around: the film does not become colder
+    than that. Where the rate has changed its sign in the step before, the film has the temperature T: so temperatures
+    that swing from step to step are damped.
 
     From the heat of this film the temperature at the end of the step follows by backward differences of second order
     (BDF2): with the ratio r of h to the step before, and kappa = r / (1 + 2 r),
@@ -60,11 +62,13 @@ class OilTemperature(abc.ABC):
         dT/dt at the end = (T_end - (T + kappa h T')) / ((1 - kappa) h).
 
     First steps, and steps much longer than the one before, are taken by backward Euler (kappa = 0), at the viscosity of
-    their start. Elsewhere kappa is reduced where T + kappa h T' would be below both the supply temperature and all
-    temperatures of the film, as behind a front of cold oil.
+    their start. Elsewhere kappa is reduced where T + kappa h T' would be below the coldest temperature, as behind a
+    front of cold oil.
     """
 
     initial_leaving: np.ndarray | None = None
+    # given temperatures around the film besides that of the supply, K
+    around: tuple[float, ...] = ()
     # whether a temperature field is transported along theta with first order
     upwind = False
 
@@ -123,9 +127,26 @@ class OilTemperature(abc.ABC):
             return self.state_of(history)
         known, size, T = self._extrapolated
         if known is not history or size != step:
-            T = self.warmed(self.state_of(history), step * heating[1])
+            assert history is not None
+            start, change = self.state_of(history), step * heating[1]
+            T = self.warmed(start, change * self._kept_of_fall(history, change[0]))
             self._extrapolated = history, step, T
         return T
+
+    def coldest(self, history: History | None) -> float:
+        """Temperature, K, below which the film cannot fall in a step: the least of film, walls and what flows in."""
+        sump = math.inf if history is None or history.sump is None else history.sump
+        return min(self.supply, sump, *self.around, float(np.min(self.state_of(history))))
+
+    def _kept_of_fall(self, history: History, change: np.ndarray) -> np.ndarray:
+        """Return the share of a linear ``change``, K, that is left of a fall towards the coldest temperature.
+
+        A film above it by D that falls with the rate of its start, ``change``, comes to ``D exp(change / D)``.
+        """
+        fall, kept = np.minimum(change, 0.0), np.ones_like(change)
+        room = self.across(self.state_of(history))[0] - self.coldest(history)
+        np.divide(room * np.expm1(fall / np.maximum(room, SMALL)), fall, out=kept, where=fall < 0.0)
+        return kept
 
     def start(self, film: SolvedFilm) -> tuple[Field, np.ndarray]:
         """Return 1 - kappa of a film's step, and T + kappa h T' of the fields of `across`."""
@@ -134,7 +155,7 @@ class OilTemperature(abc.ABC):
         if history is None or (heating := heating_before(history, step)) is None:
             return 1.0, T
         change, whole = step * heating[0], step / (history.last_step + 2.0 * step)
-        kappa, room = np.full(T[0].shape, whole), T[0] - min(self.supply, float(T[0].min()))
+        kappa, room = np.full(T[0].shape, whole), T[0] - self.coldest(history)
         np.divide(room, -change[0], out=kappa, where=room < -whole * change[0])
         return 1.0 - kappa, T + kappa * change
 
@@ -233,6 +254,7 @@ class LumpedTemperature(OilTemperature):
         super().__init__(spec, lubricant)
         self.spec, self.heat_and_exchange = spec, heat_and_exchange
         self.housing = self._or_supply(spec.housing_temperature)
+        self.around = (self.housing,)
         self.capacity = self.flow_capacity * volume + spec.capacity
         self._last = math.nan, 1.0
         self.field: ViscosityField | None = None

@@ -79,6 +79,7 @@ class FilmTemperature(OilTemperature):
         self.spec, self.field, self.shape, self.clearance = spec, field, shape, bearing.radial_clearance
         bush, journal = self._or_supply(spec.bush_temperature), self._or_supply(spec.journal_temperature)
         self.walls = (spec.bush_coefficient, float(bush)), (spec.journal_coefficient, float(journal))
+        self.around = tuple(T for coefficient, T in self.walls if coefficient > 0.0)
         self.transfer = spec.bush_coefficient + spec.journal_coefficient
         R, L = bearing.journal_radius, bearing.length
         self.sides: list[_Wall | None] = [None, None]

@@ -270,9 +270,9 @@ class BearingModel:
             deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
             pockets=s.pockets,
         )
-        if void is not None and film.history is not None:
-            for term in effects.gap_terms:  # changes by wear and growth, which act in the next step
-                void += term.field(new) - term.field(old)
+        if effects.gap_terms and void is not None and film.history is not None and film.step > 0.0:
+            changes = [term.field(new) - term.field(old) for term in effects.gap_terms]
+            new = replace(new, growth=np.sum(changes, axis=0) / film.step)
         return new
 
     def evaluate(
@@ -389,6 +389,8 @@ class BearingModel:
         fields = surfaces if self._displacement is None else [*surfaces, self._displacement]
         height = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
         rate = self._rate if s.squeeze else s.nothing
+        if history is not None and history.growth is not None:
+            rate = rate + history.growth
         if self.effects.lobes is not None:
             s.HF += self.effects.lobes.between
         smallest, slopes = add_gap(height, rate, self.grid, s.H, s.HF, s.H_t)
