@@ -13,6 +13,7 @@ from exudyn_ehd.film.banded.factors import factor_band, factor_lu
 from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.grid import Mesh
 from exudyn_ehd.film.reynolds import links as reynolds
+from exudyn_ehd.film.reynolds.balance import right_hand_side
 
 
 class Film(NamedTuple):
@@ -50,7 +51,7 @@ def make_film() -> Callable[..., Film]:
         grid = SimpleNamespace(**mesh._asdict(), cuts=None)
         metric, terms, b = reynolds.link_metric(grid, flow_x), np.zeros((10, n, m)), np.full((n, m), np.nan)
         reynolds.set_links(H, HF, None, metric, vx, vz, terms)
-        reynolds.right_hand_side(terms[2], terms[3], True, H_t, np.outer(width_x, width_z), b)
+        right_hand_side(terms[2], terms[3], True, H_t, np.outer(width_x, width_z), b)
         return Film(H, HF, H_t, mesh, vx, vz, flow_x, metric, terms, *terms[:4], b)
 
     return make

@@ -246,6 +246,20 @@ def test_flows_along_an_end():
     assert flow[3] == pytest.approx(2.0 - 0.25 + 1.0)
 
 
+@pytest.mark.parametrize("seed", range(40))
+def test_flows_along_an_end_close(seed):
+    """The ring's flows after one turn are those with which it began, whatever enters and leaves."""
+    rng = np.random.default_rng((5, seed))
+    n, way = 48, rng.choice([-1.0, 1.0])
+    turned = way * (1.0 + 0.9 * np.cos(2.0 * math.pi * np.arange(n) / n + rng.uniform(0.0, 6.0)))
+    pressed, stored = 0.03 * rng.normal(size=n) - rng.choice([0.0, 1e-4]), 0.01 * rng.normal(size=n)
+    squeezed, full = 0.01 * rng.normal(size=n), rng.random(n) < 0.1
+    flow, entering = np.empty(n), np.empty(n)
+    end_flows_around(turned, pressed, stored, squeezed, full, flow, entering)
+    np.testing.assert_allclose(flow - np.roll(flow, 1) + pressed + stored, entering, atol=1e-13)
+    assert np.all((flow * way >= 0.0) & (np.abs(flow) <= np.abs(turned) * (1.0 + 1e-14)))
+
+
 @pytest.mark.parametrize(
     ("closure", "supply"),
     [

@@ -380,3 +380,56 @@ def test_a_groove_that_takes_oil_back_carries_no_heat_away(closure):
     assert film.leakage == pytest.approx(film.supply_flows[0], rel=1e-9)
     heat = film.power_loss + groove.pressure * film.leakage
     assert film.temperature - SUPPLY == pytest.approx(heat / (CAPACITY * film.leakage), rel=1e-7)
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1.0, 1.6, 2.0, 2.4])
+@pytest.mark.parametrize("heat", [ehd.LumpedThermal, ehd.FilmEnergy])
+def test_a_hot_film_that_cools(measured, heat, ratio):
+    """Steps that grow, from a tenth of a turn: no film is colder than the oil that enters, and forces do not run away.
+
+    The film starts 60 K above its supply, and ends 20 to 30 K above it.
+    """
+    hot, turn = bearing(heat(supply_temperature=SUPPLY, initial_temperature=SUPPLY + 60.0)), 2.0 * math.pi / OMEGA
+    model, at = build_model(hot), motion(0.7)
+    settled = model.evaluate(at, settled_history(model, at)).wrench
+    history, largest = model.initial_history(at), 0.0
+    for k in range(24):
+        found = model.evaluate(at, history, 0.1 * turn * min(ratio**k, 1e4))
+        history = found.history()
+        largest = max(largest, float(np.hypot(*found.wrench[:2])))
+        assert np.min(found.film.temperature) >= SUPPLY - 1e-9
+        assert np.min(model.effects.thermal.across(history.temperature)) >= SUPPLY - 1e-9
+    measured("largest force over the settled one", largest / float(np.hypot(*settled[:2])), 3.0)
+
+
+@pytest.mark.parametrize("seed", sample(range(24), 4))
+def test_what_is_around_is_the_coldest(seed):
+    """A film that falls is extrapolated to no temperature below those of supply, housing, walls and film, K."""
+    rng = np.random.default_rng((8, seed))
+    wall, housing = SUPPLY + rng.uniform(-30.0, 30.0, 2)
+    heats = (
+        ehd.LumpedThermal(supply_temperature=SUPPLY, housing_temperature=housing, housing_conductance=5.0),
+        ehd.FilmEnergy(supply_temperature=SUPPLY, bush_temperature=wall, bush_coefficient=2e3),
+        ehd.FilmEnergy(
+            supply_temperature=SUPPLY, bush_temperature=wall, bush_coefficient=2e3, conductivity=0.13, across=2
+        ),
+    )
+    for heat, around in zip(heats, (housing, wall, wall)):
+        thermal = build_model(bearing(heat, film=ehd.FiniteLength(n_theta=24, n_z=4))).effects.thermal
+        start = thermal.first_memory()
+        rise = rng.uniform(0.0, 50.0, np.shape(thermal.across(start.temperature)[0]))
+        fields = np.zeros_like(thermal.across(start.temperature))
+        fields[0] = rise
+        hot = thermal.warmed(start.temperature, fields)
+        fall = np.zeros_like(fields)
+        fall[0] = -(10.0 ** rng.uniform(-2.0, 4.0, rise.shape))
+        history = History(temperature=hot, heating=np.array([fall, fall]), last_step=1.0)
+        found = thermal.across(thermal.extrapolated(history, 1.0))[0]
+        assert found.min() >= min(SUPPLY, around) - 1e-9
+        # a short fall is a straight line, to second order
+        slow = History(temperature=hot, heating=1e-4 * np.array([fall, fall]) / np.abs(fall).max(), last_step=1.0)
+        line = thermal.across(hot)[0] + slow.heating[1, 0]
+        away = thermal.across(hot)[0] > min(SUPPLY, around) + 1.0
+        np.testing.assert_allclose(
+            thermal.across(thermal.extrapolated(slow, 1.0))[0][away], line[away], rtol=0, atol=1e-8
+        )

@@ -451,3 +451,23 @@ def test_what_remembers_its_oil_has_its_settled_stiffness_at_rest(make_bearing):
     np.testing.assert_allclose(change, [0.0, -1.0], atol=0.02)
     plain = ehd.equilibrium(make_bearing(1.0, film=FILM), speed=SPEED, load=(0.0, -300.0))
     assert plain.settled_stiffness is plain.stiffness
+
+
+@pytest.mark.parametrize("coefficient", (0.0, 20.0, 100.0))
+@pytest.mark.parametrize("closure", (ehd.ElrodAdams(cavity_pressure=-1e5), ehd.SwiftStieber()))
+def test_loads_of_heated_films_are_carried(closure, coefficient):
+    """Loads of steady films with a temperature field, drawn in at the ends: `equilibrium` finds their positions."""
+    heat = ehd.FilmEnergy(supply_temperature=313.15, bush_coefficient=coefficient)
+    hot = ehd.JournalBearing(
+        journal_radius=0.025,
+        length=0.025,
+        radial_clearance=25e-6,
+        lubricant=ehd.oil("ISO VG 46"),
+        thermal=heat,
+        film=ehd.FiniteLength(n_theta=48, n_z=8),
+        cavitation=closure,
+    )
+    for ratio in (0.5, 0.7, 0.85):
+        film = ehd.steady(hot, speed=314.0, eccentricity_ratio=ratio)
+        found = ehd.equilibrium(hot, speed=314.0, load=tuple(-film.force[:2]))
+        assert np.hypot(*found.position) / 25e-6 == pytest.approx(ratio, rel=1e-6)
