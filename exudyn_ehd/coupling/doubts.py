@@ -79,8 +79,8 @@ from exudyn_ehd.coupling.exudyn_solvers import USUAL_RADIUS, Solver
 from exudyn_ehd.coupling.kinematics.relative import eccentricity_ratios, levers_of
 from exudyn_ehd.coupling.record.history import JointHistory, error_of_pockets, unseen_errors
 from exudyn_ehd.joint.audit.findings import LIMITS
-from exudyn_ehd.joint.audit.resolution import FADING, Resolution, coarse_film, is_judged, resolution
-from exudyn_ehd.joint.audit.samples import RING_COMPLIANCE, adiabatic_rise, time_mean
+from exudyn_ehd.joint.audit.resolution import LOCAL_SHARE, WINDOW, Resolution, coarse_film, is_judged, resolution
+from exudyn_ehd.joint.audit.samples import STEEL_COMPLIANCE, adiabatic_rise, time_mean
 from exudyn_ehd.joint.audit.switches import (
     MULTIGRADE,
     PIEZOVISCOSITY,
@@ -103,16 +103,12 @@ from exudyn_ehd.status import (
 
 # Mismatch s of a step that is not resolved: an oscillation with less than 3.5 steps per period.
 UNRESOLVED = 0.25
-# Position error, m, below which a step counts as resolved. It is larger than the round-off of positions some metres
-# from the origin. A small share of the gap is a second such limit.
-SMALLEST_MISMATCH = 1e-14
-# Least error of a step that counts, over the largest error before it, which counts less from step to step.
-LASTING_SHARE = 0.15
-# Score at which chatter is reported: a step that counts adds two, any other subtracts one. Larger: reported later.
+# Score at which chatter is reported: a step that is not resolved adds two, if its error is more than `LOCAL_SHARE` of
+# the largest one of some `WINDOW` steps; any other subtracts one. Larger: reported later.
 LIMIT = 32
-# Least growth of the speed in a kick; a kick adds this weight to a score, any other step subtracts one, so that one
-# kick in eight steps keeps it; score at which chatter is reported.
-KICK, KICK_WEIGHT, KICK_LIMIT = 1.1, 7, 70
+# A kick adds this weight to a second score, any other step subtracts one, so that one kick in eight steps keeps it.
+# Hits from outside are kicks too, so that chatter is reported at twice the limit. Larger: rarer kicks are reported.
+KICK = 7
 # Loss of angular momentum in a turn above which a run warns; turn of a step over 1 - rho, rad, above which vibrations
 # may grow; turn of a step, rad, below which vibrations are not assumed to grow.
 LOST, GROWING, LEAST_TURN = 0.01, 0.8, 2.0 * math.pi / 200
@@ -160,14 +156,14 @@ class ChatterWatch:
         self.error = float(np.sqrt(mismatch @ mismatch))
         speed, speed_before = float(np.sqrt(rate @ rate)), float(np.sqrt(rate_before @ rate_before))
         gap = 1.0 - eccentricity_ratios(motion, self.clearance, self.length)[1]
-        smallest = max(SMALLEST_MISMATCH, SMALL * self.clearance * max(gap, SMALLEST_GAP_SHARE))
-        self.largest = max(self.error, FADING * self.largest)
+        smallest = SMALL * self.clearance * max(gap, SMALLEST_GAP_SHARE)
+        self.largest = max(self.error, self.largest - self.largest / WINDOW)
         unresolved = self.error > max(UNRESOLVED * step * max(speed, speed_before), smallest)
-        counts = unresolved and self.error > LASTING_SHARE * self.largest
+        counts = unresolved and self.error > LOCAL_SHARE * self.largest
         self.score = self.score + 2 if counts else max(self.score - 1, 0)
-        kick = unresolved and speed > KICK * speed_before
-        self.kicks = self.kicks + KICK_WEIGHT if kick else max(self.kicks - 1, 0)
-        return self.score >= LIMIT or self.kicks >= KICK_LIMIT
+        kick = unresolved and speed > speed_before
+        self.kicks = self.kicks + KICK if kick else max(self.kicks - 1, 0)
+        return self.score >= LIMIT or self.kicks >= 2 * LIMIT
 
 
 def lost_in_a_turn(radius: float) -> float:
@@ -315,7 +311,7 @@ def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
     speed = float(np.max(spin)) * b.journal_radius
     means = (np.array(time_mean(h.time, x)) for x in (h.power_loss, h.leakage, spin * b.journal_radius))
     rise = float(adiabatic_rise(b, *means))
-    deflection = RING_COMPLIANCE * b.journal_radius * highest / STEEL["youngs_modulus"]
+    deflection = STEEL_COMPLIANCE * b.journal_radius * highest / STEEL["youngs_modulus"]
     thickening = PIEZOVISCOSITY.coefficient * highest
     reynolds = b.lubricant.density * speed * b.radial_clearance / b.lubricant.viscosity
     # a gap that has closed has no shear rate

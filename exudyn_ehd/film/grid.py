@@ -26,8 +26,9 @@ import numpy as np
 
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, require_bool, require_count, require_number
 
-# Check of a film model's axial stretching: larger values, up to 0.95, refine the ends more.
-STRETCH = partial(NOT_NEGATIVE, at_most=0.95, hint="0.75 suits most bearings.")
+# Largest axial stretching of a film model, and its check: larger values refine the ends more.
+LARGEST_STRETCH = 0.95
+STRETCH = partial(NOT_NEGATIVE, at_most=LARGEST_STRETCH, hint="0.75 suits most bearings.")
 
 
 class Mesh(NamedTuple):

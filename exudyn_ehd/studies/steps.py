@@ -8,8 +8,8 @@ The journal, a mass with a given spin, carries the cycle's load on the film, in 
 
 which falls fourfold from N to 2 N where the integrator has reached its second order. What is left to the limit behind
 the run with N steps is then d_N + d_2N + ... of all finer runs, and behind the last d / (r - 1) with the last factor r
-between changes, cut off at 4 and at the square root of 2. A last r above 8 says that the run before was too coarse to
-belong to the order of the others: one more is made.
+between changes, cut off at 4 and at the square root of 2. A last r above 8, of an order above the integrator's, says
+that the run before was too coarse to belong to the order of the others: one more is made.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.api import CreateLubricatedJoint
 from exudyn_ehd.coupling.exudyn_solvers import ConfigureSolver
 from exudyn_ehd.coupling.run.solve import SolveDynamic
+from exudyn_ehd.joint.balance.position import CLOSED
 from exudyn_ehd.progress import without_lines
 from exudyn_ehd.status import EHDError, InputError, RunError, require_number, require_plausible, require_type, warn_user
 from exudyn_ehd.studies.film_errors import order_of
@@ -42,10 +43,6 @@ from exudyn_ehd.studies.film_errors import order_of
 FEWEST, LEVELS = 90, 7
 # Safety factor: other moving parts of a mechanism add to the error of its bearing.
 MARGIN = 2.0
-# Changes that fall faster from run to run tell of a first run too coarse to belong to the order of the others.
-FASTEST = 8.0
-# Thinner films than this share of the clearance, as of surfaces in contact, are no measure.
-THINNEST = 0.01
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -153,7 +150,7 @@ def recommend_steps(
                 found=False, reason=f"the film fails with {steps} steps a period: {failure}", evidence=tuple(evidence)
             )
         if level:
-            floor = max(float(np.min(runs[-1])), THINNEST * bearing.radial_clearance)
+            floor = max(float(np.min(runs[-1])), CLOSED * bearing.radial_clearance)
             changes.append(float(np.max(np.abs(runs[-1][::2] - runs[-2]))) / floor)
             evidence.append(f"{steps // 2} to {steps} steps a period: {100.0 * changes[-1]:.2g} %")
         bounds = _bounds(changes)
@@ -192,9 +189,10 @@ def _require_cycle(load: ArrayLike, speed: ArrayLike) -> tuple[np.ndarray, np.nd
 
 def _bounds(changes: list[float]) -> list[float]:
     """Bounds of the distances to the limit of the runs that have two finer ones, from the changes between all."""
-    if len(changes) < 2 or changes[-2] > FASTEST * changes[-1]:
+    finer, order = 2.0, 2.0  # steps from run to run, and the order of the integrator
+    if len(changes) < 2 or changes[-2] > finer ** (order + 1.0) * changes[-1]:
         return []
-    behind = changes[-1] / (2.0 ** order_of(changes[-2], changes[-1], 2.0, 2.0) - 1.0)
+    behind = changes[-1] / (finer ** order_of(changes[-2], changes[-1], finer, order) - 1.0)
     return [MARGIN * (sum(changes[k:]) + behind) for k in range(len(changes) - 1)]
 
 

@@ -48,7 +48,7 @@ def _true_error(bearing, steps, speed, period, load, mass):
     motion = tried._two_periods(np.broadcast_to(speed, len(load)), period)
     force = tried._two_periods(load, period)
     coarse, fine = (tried._second_period(bearing, n, period, motion, force, mass) for n in (steps, 4 * steps))
-    floor = max(fine.min(), tried.THINNEST * bearing.radial_clearance)
+    floor = max(fine.min(), tried.CLOSED * bearing.radial_clearance)
     return np.abs(coarse - fine[::4]).max() / floor
 
 

@@ -17,6 +17,7 @@ from exudyn_ehd.coupling.rotor.result import Layout, RotorResult
 from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, State
 from exudyn_ehd.coupling.rotor.spinning import WHERE
 from exudyn_ehd.coupling.run.solve import joints_of
+from exudyn_ehd.joint.static.dynamic_stiffness import SCAN
 from exudyn_ehd.pictures.records import Target
 from exudyn_ehd.status import InputError, require_number, require_plausible
 
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# Number of speeds between the limits at which a search for a threshold begins. Larger: slower, fewer missed ranges.
-SCAN = 16
 # Configurations of a system that the search overwrites, although a run or its history continues from them.
 CONFIGURATIONS = (CURRENT, START_OF_STEP)
 # User functions of films, which are removed from Exudyn during a search, because films are evaluated here once per

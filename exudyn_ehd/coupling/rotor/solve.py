@@ -24,12 +24,14 @@ from exudyn_ehd.coupling.rotor.films import RotorFilm, film_model
 from exudyn_ehd.coupling.rotor.spinning import WHERE, Rotors, find_rotors
 from exudyn_ehd.coupling.rotor.system import HeldBore, SpinningSystem
 from exudyn_ehd.coupling.run.joint_state import Joint
+from exudyn_ehd.joint.bore.equilibrium import SETTLING_STEPS
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.status import ROUNDING, FilmError, InputError
 
-# Tolerance of the unbalance over the loads of the films, and largest number of steps of Newton's method.
-TOLERANCE, STEPS = 1e-8, 40
+# Tolerance of the unbalance over the loads of the films, and over the largest term of a vibration's dynamic stiffness.
+# Larger: less accurate states, spurious vibrations.
+TOLERANCE = 1e-8
 NOT_HELD = (
     "nothing holds {}; hold it by a film, a spring or a constraint, a shaft along its axis by "
     "CreateLubricatedJoint(axial=ehd.Held())."
@@ -39,8 +41,8 @@ NO_MASS = "{} moves without mass or inertia; give its body both, or hold it."
 # all directions.
 ISOTROPIC = 1e-4
 # Smallest stiffness, and smallest mass, of a body over the largest one; rotations are multiplied by a bearing's length.
-# Below them a body counts as not held, or without mass: an error.
-SOFTEST, LIGHTEST = 1e-11, 1e-13
+# Below it a body counts as not held, or without mass: an error.
+LEAST = 1e-12
 
 
 class ForceBalance(NamedTuple):
@@ -159,14 +161,14 @@ class EquilibriumSearch:
         for _ in range(3):
             self._update()
             balance = self._balance([film.support(*part) for film, part in zip(self.films, supports, strict=True)])
-            require_regular(self.system, self.weights, balance.K, balance.free, SOFTEST, NOT_HELD)
+            require_regular(self.system, self.weights, balance.K, balance.free, NOT_HELD)
             step = self._step(balance)
             self.system.q = self.system.moved(min(film.room_of_faces(step) for film in self.films) * step)
             self._update()
             forces = np.array([f.support(*part)[0][:2] for f, part in zip(self.films, supports, strict=True)])
             supports = [place for k, film in enumerate(self.films) for place in film.guess(forces[k:])]
         if self.slope is None:
-            require_regular(self.system, self.weights, self.system.mass(), balance.free, LIGHTEST, NO_MASS)
+            require_regular(self.system, self.weights, self.system.mass(), balance.free, NO_MASS)
             require_axis(self.mbs, self.system)
             require_isotropy(self.system, self.weights)
 
@@ -232,7 +234,7 @@ class EquilibriumSearch:
     def _newton(self) -> list[tuple[Evaluation, np.ndarray]] | None:
         """Films and tangents of an equilibrium; None if none was found."""
         system = self.system
-        for _ in range(STEPS):
+        for _ in range(SETTLING_STEPS):
             films = self._films()
             if films is None:
                 return None
@@ -265,7 +267,7 @@ class EquilibriumSearch:
 
 
 def require_regular(
-    system: SpinningSystem, weights: np.ndarray, matrix: np.ndarray, free: np.ndarray, least: float, message: str
+    system: SpinningSystem, weights: np.ndarray, matrix: np.ndarray, free: np.ndarray, message: str
 ) -> None:
     """Raise `InputError` for a body that moves without stiffness or mass; ``message``: text with a place for its name.
 
@@ -276,12 +278,10 @@ def require_regular(
         1 for displacements, 1 / length for rotations.
     matrix, free : (N, N), (N, n) arrays
         Stiffness or mass, and the directions that constraints leave.
-    least : float
-        Smallest share of the largest stiffness or mass.
     """
     scaled = free.T * weights
     _, values, right = np.linalg.svd(scaled @ matrix @ scaled.T)
-    if values[-1] <= least * values[0]:
+    if values[-1] <= LEAST * values[0]:
         loose = named(system, int(np.argmax(np.abs(free @ right[-1]) / weights)))
         raise InputError(f"{WHERE}: {message.format(loose)}")
 

@@ -56,9 +56,8 @@ from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.status import InputError
 
-# Steps of the difference quotients: of x, m or rad, and of u, m/s or rad/s. The latter may be large, because the forces
-# of bodies are quadratic in u.
-STEP, RATE_STEP = 1e-6, 1e-2
+# Step of the difference quotients of u, m/s or rad/s. It may be large, because the forces of bodies are quadratic in u.
+RATE_STEP = 1e-2
 
 COORDINATES_OF = {
     rigid_nodes.EULER_PARAMETERS: RotationMatrix2EulerParameters,
@@ -303,11 +302,12 @@ class SpinningSystem:
         u, r_x, r_u = self.spin(), np.empty((self.size, self.size)), np.empty((self.size, self.size))
         known = {number: node.rates(self.q, u[node.own][3:]) for number, node in self.nodes.items()}
         owners = np.full(self.size, -1)
+        h = float(np.cbrt(np.finfo(float).eps))  # m or rad, with the least error of central differences
         for number, node in self.nodes.items():
             owners[node.own] = number
         for k, unit in enumerate(np.eye(self.size)):
-            ends = [self.balance(self.moved(step * unit, owners[k]), u, known, owners[k])[0] for step in (STEP, -STEP)]
-            r_x[:, k] = (ends[0] - ends[1]) / (2.0 * STEP)
+            ends = [self.balance(self.moved(step * unit, owners[k]), u, known, owners[k])[0] for step in (h, -h)]
+            r_x[:, k] = (ends[0] - ends[1]) / (2.0 * h)
             ends = [self.balance(self.q, u + step * unit, known, owners[k])[0] for step in (RATE_STEP, -RATE_STEP)]
             r_u[:, k] = (ends[0] - ends[1]) / (2.0 * RATE_STEP)
         return r_x, r_u

@@ -7,16 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.linalg import block_diag, eig
 
-from exudyn_ehd.joint.static.dynamic_stiffness import ROUNDING, FilmMemory
+from exudyn_ehd.coupling.rotor.solve import TOLERANCE
+from exudyn_ehd.joint.bore.equilibrium import SETTLING_STEPS
+from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
+from exudyn_ehd.status import SMALL
 
-# Largest unbalanced force of a vibration in the whole dynamic stiffness, over the largest of its terms, and relative
-# difference of two eigenvalues that count as one. Larger: spurious vibrations may be accepted.
-TOLERANCE = 1e-7
 # Part of the bodies in a motion above which it is always told. Smaller: more motions of the oil among the results.
 PART = 0.1
-# Largest such force, and relative change of the eigenvalue, from which Newton's method goes on. Larger: more guesses
-# lead to another motion than their own. Its largest number of steps; it converges in five.
-NEAR, MOST_STEPS = 0.3, 12
+# Largest unbalanced force of a vibration, over the largest term of its dynamic stiffness, and relative change of the
+# eigenvalue from which Newton's method goes on. Larger: more guesses lead to another motion than their own.
+NEAR = 0.3
 
 
 def vibrations(M: np.ndarray, D: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -59,14 +59,15 @@ def vibrations_in_films_that_follow(
     with np.errstate(divide="ignore", invalid="ignore"):
         part = np.nan_to_num(np.abs(products[bodies].sum(axis=0) / products.sum(axis=0)))
     told: dict[complex, np.ndarray] = {}
+    rounding = np.finfo(float).eps * len(inverse) * np.abs(inverse).max()
     for k in np.argsort(-part):
         # of a pair the one with a positive frequency; 1 / s of infinite ones is round-off
-        if inverse[k].imag > 0.0 or np.abs(inverse[k]) <= ROUNDING * np.abs(inverse).max():
+        if inverse[k].imag > 0.0 or np.abs(inverse[k]) <= rounding:
             continue
         if len(told) >= 2 * n and part[k] < PART and not inverse[k].real > 0.0:
             continue
         s, y = _refined(M, D, K, films, 1.0 / complex(inverse[k]), vectors[:n, k].astype(complex))
-        if y is not None and not any(abs(s - other) < TOLERANCE * abs(s) for other in told):
+        if y is not None and not any(abs(s - other) < SMALL * abs(s) for other in told):
             told |= {s: y, s.conjugate(): y.conj()}
     return np.array(list(told)), np.array(list(told.values())).T.reshape(n, -1)
 
@@ -82,8 +83,8 @@ def _refined(
     def terms(s: complex) -> np.ndarray:
         return np.array([s**2 * M, s * D, K, *(film.beyond(s) for film in films)])
 
-    for _ in range(MOST_STEPS):
-        if abs(s.imag) < TOLERANCE * abs(s):
+    for _ in range(SETTLING_STEPS):
+        if abs(s.imag) < SMALL * abs(s):
             # round-off of a motion without oscillation
             s, y = complex(s.real), (y / y[np.argmax(np.abs(y))]).real.astype(complex)
         try:

@@ -36,15 +36,13 @@ from exudyn_ehd.status import SMALL, Status, warn_user
 
 # First and largest step, over the step of the settings.
 FIRST, LARGEST = 0.125, 4.0
-# Factors of the size from step to step: the smallest and the largest one; demanded factor above which the size is not
-# reduced.
-SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
+# Factors of the size from step to step: the smallest and the largest one. Sizes that would change by less than the
+# largest factor are kept.
+SHRINK, GROW = 0.5, 1.1
 # Factor by which the demand of earlier steps decays per step. Larger: steps grow later after a difficult one.
 KEPT = 0.94
 # Allowed error of steps over the error asked for: errors of successive steps cancel in part. Larger: longer steps.
 CANCELLED = 1.5
-# A step that is repeated for a jump does not end in this share of it at its beginning and at its end.
-END_OF_STEP = 0.25
 # Least allowed error of a jump, over the requested error. Larger: fewer repeated steps, larger errors.
 LEAST_OF_ERROR = 0.5
 
@@ -96,10 +94,10 @@ class _JointError:
             jump = jump if math.isfinite(loads.offset[-1, 0]) else share * moved[2]
             asked = max(asked - moved[3], LEAST_OF_ERROR * asked)
             if jump > asked:
-                most = step * min(1.0 - END_OF_STEP, max(END_OF_STEP, math.sqrt(asked / jump)))
+                most = SHRINK * step
                 # such that the jump is n + 1/2 steps away and lies in the middle of the last step
                 centred = (place - start) / (max(1.0, math.ceil((place - start) / most + 0.5)) - 0.5)
-                self.wanted = max(centred, min(most, 0.5 * step * asked / jump))
+                self.wanted = max(centred, most * asked / jump)
                 return max(used, REFUSED)
         less = self._asks_for_less(start, step, moved[1], asked)
         return max(used, REFUSED) if less else used
@@ -198,7 +196,7 @@ class StepSize:
             self.demand = max(math.sqrt(self.used) / step, KEPT * self.demand)
             wanted = min(1.0 / self.demand if self.demand > 0.0 else math.inf, LARGEST * self.usual)
             factor = wanted / self.size
-            if factor < WORTH or factor > GROW:
+            if not 1.0 / GROW <= factor <= GROW:
                 self.size *= min(GROW, max(SHRINK, factor))
 
     def _landing(self, time: float) -> float:

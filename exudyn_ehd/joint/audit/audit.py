@@ -19,21 +19,14 @@ from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole
 from exudyn_ehd.film.surfaces.contact import ElasticLiner
 from exudyn_ehd.joint.audit import effects, switches
 from exudyn_ehd.joint.audit.case import MATTERS, Case
-from exudyn_ehd.joint.audit.findings import LIMITS, Audit, Finding, judged
-from exudyn_ehd.joint.audit.resolution import WINDOW, Resolution, watched
+from exudyn_ehd.joint.audit.findings import Audit, Finding, judged
+from exudyn_ehd.joint.audit.resolution import ENOUGH, FEWEST, FINER, STEEPEST, WINDOW, Resolution, watched
 from exudyn_ehd.joint.audit.samples import RecordedSteps, recorded_states, squeeze_rate
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.step_error import enough_steps
 
 # Ratio of the intervals across the peak to the needed ones above which a coarser grid is advised. Larger: later.
 TOO_FINE = 6.0
-# The same ratio, above which a grid not coarser than the default passes without comparison. Larger: more comparisons.
-SURELY_FINE = 2.0
-# Intervals along z across a peak with which the load is accurate to 1 %.
-NEEDED_ALONG = 3.0
-# Largest ratio of the film thicknesses at both ends of the last interval along z. The pressure rises there by
-# int dz / h^3, which the two vertices give with an error of 2 % of the end's film thickness up to this ratio.
-NARROWS = 1.6
 # Advised grids: option, number of which sizes are multiples, least size.
 SIZES = {"grid around": ("n_theta", 8, 48), "grid along": ("n_z", 2, 6)}
 
@@ -162,7 +155,7 @@ def grid_columns(case: Case) -> Finding | None:
     """Intervals around across the pressure peak; None for an impedance map, whose error is sampled when it is built."""
     worst = min(case.resolutions, key=lambda seen: seen.columns)
     text, across = "intervals across the peak at half its height", worst.columns
-    return _grid(case, "grid around", text, across, worst, across, LIMITS["grid around"].value)
+    return _grid(case, "grid around", text, across, worst, across)
 
 
 def grid_rows(case: Case) -> Finding | None:
@@ -174,8 +167,8 @@ def grid_rows(case: Case) -> Finding | None:
         "growth of the film within an interval of its end",
     )
     across = min(seen.rows for seen in case.resolutions)
-    narrows = max(seen.growth for seen in case.resolutions) > NARROWS
-    return _grid(case, "grid along", text, worst.narrowing, worst, across, NEEDED_ALONG, narrows)
+    narrows = FINER * (max(seen.growth for seen in case.resolutions) - 1.0) > STEEPEST - 1.0
+    return _grid(case, "grid along", text, worst.narrowing, worst, across, narrows)
 
 
 def _grid(
@@ -185,22 +178,22 @@ def _grid(
     value: float,
     worst: Resolution,
     across: float,
-    needed: float,
     narrows: bool = False,
 ) -> Finding | None:
-    """Finding about the intervals ``across`` the peak, of which ``needed`` suffice.
+    """Finding about the intervals ``across`` the peak, of which `FEWEST` are needed.
 
-    Unless the grid is surely fine, films with twice as many intervals are computed for comparison.
+    Films with twice as many intervals are computed for comparison, unless there are `ENOUGH` of a grid that is not
+    coarser than the default, and the film does not narrow too fast.
     """
     film, (name, unit, fewest) = case.bearing.sized_film, SIZES[effect]
     if isinstance(film, ImpedanceMap):
         return None
     size, sizes = getattr(film, name), {"n_theta": film.n_theta, "n_z": film.n_z}
     default = getattr(replace(case.bearing, film=FiniteLength()).sized_film, name)
-    is_fine = across > SURELY_FINE * needed and size >= default and not narrows
+    is_fine = across > ENOUGH and size >= default and not narrows
     change = None if is_fine else case.change(switches.refined(**sizes | {name: 2 * size}))
     found = replace(judged(case, effect, f"{text}, {name} = {size}", value, None), change=change)
-    wanted = unit * math.ceil(1.5 * size * needed / (unit * max(across, 0.25)))
+    wanted = unit * math.ceil(1.5 * size * FEWEST / (unit * max(across, 0.25)))
     if found.matters or (change is not None and change.found and change.size > MATTERS):
         cause = "film narrows too fast towards its ends" if narrows else "pressure peak is too narrow"
         wanted = max(wanted, unit * math.ceil(1.5 * size / unit))
@@ -210,7 +203,7 @@ def _grid(
             grid, remedy = repr(worst.wanted), partial(replace, film=worst.wanted)
         return replace(found, matters=True, advice=f"the {cause} for the grid: {grid}.", remedy=remedy)
     wanted = max(wanted, fewest)
-    if across > TOO_FINE * needed and wanted < size:
+    if across > TOO_FINE * FEWEST and wanted < size:
         coarser = switches.refined(**sizes | {name: wanted})
         # a flexible bore has a constriction narrower than the pressure peak
         loss = None if case.bearing.bush is None else case.change(coarser)

@@ -17,13 +17,9 @@ from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal, known_supply
 from exudyn_ehd.joint.audit import switches
 from exudyn_ehd.joint.audit.case import Case
 from exudyn_ehd.joint.audit.findings import LIMITS, Finding, judged
-from exudyn_ehd.joint.audit.samples import adiabatic_rise, time_mean
+from exudyn_ehd.joint.audit.samples import STEEL_COMPLIANCE, adiabatic_rise, time_mean
 from exudyn_ehd.joint.balance.limits import COOLER
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
-
-# Radial deflection of a free solid steel pin under the peak pressure, over R p / E. Larger: elasticity of the journal
-# is found to matter more often.
-PIN_COMPLIANCE = 0.6
 
 
 def _over_gap(case: Case, deflection: np.ndarray) -> float:
@@ -77,7 +73,7 @@ def journal_elasticity(case: Case) -> Finding | None:
         return judged(case, effect, _deflecting(b), value, True, switches.rigid_journal, needless=needless)
     if b.bush is not None and type(b.bush).__name__ != "ModalBush":
         return None
-    compliance = PIN_COMPLIANCE * b.journal_radius / switches.STEEL["youngs_modulus"]
+    compliance = STEEL_COMPLIANCE * b.journal_radius / switches.STEEL["youngs_modulus"]
     return judged(
         case,
         effect,

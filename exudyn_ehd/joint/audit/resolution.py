@@ -32,7 +32,7 @@ the steps before and after it, and is more than a tenth of the force.
 Zigzags alone are no fault: after a sudden start generalized alpha damps the alternation within some steps. In a run
 that rings, alternations are excited again and again: by halved steps, by Newton's method that accepts forces next to
 the solution, by impacts within a single step. So *bursts* are counted. A burst is a zigzag stronger than those of the
-five steps before it, or an alternation that does not fade, which counts once in `LASTING` zigzags.
+five steps before it, or an alternation that does not fade, which counts once in `RingingWatch.lasting` zigzags.
 
 Masses move by the mean of the force over the steps. By Newmark's formulas, and those of generalized alpha, positions
 depend on ``F_k - d_k / 2``, which in equal steps is the mean with the weights (1, 2, 1) / 4. An alternation adds
@@ -50,21 +50,20 @@ from typing import NamedTuple
 
 import numpy as np
 
+from exudyn_ehd.film.grid import LARGEST_STRETCH
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.joint.solved_film import SolvedFilm
-from exudyn_ehd.status import GridWarning, RingingWarning, warn_user
+from exudyn_ehd.status import SMALL, GridWarning, RingingWarning, warn_user
 
 # Intervals across the peak below which, and narrowing above which, the error of the peak pressure is above some 5 %: a
-# warning. Number of rows from an end up to which the peak counts as next to that end.
-FEWEST, STEEPEST, NEAR = 3.2, 2.15, 2
-# Properties of the grid that a warning names, with an error of 2 % of the peak pressure: intervals across the peak;
-# narrowing less one; stretch of the rows; least number of rows.
-ENOUGH, GENTLE, STRETCH, FEWEST_ROWS = 6.0, 0.4, 0.95, 48
-# Narrowing up to which the film counts as even along the bearing, so that its rows are kept. At a limit of 1.15 the
-# peak, which lies between two rows, would have an error of up to 4 %.
-EVEN = 1.02
-# Width of a peak at half its height over the square root of 2 h / h'', for films thinner than a tenth of the clearance.
-PEAK_WIDTH = 1.25
+# warning.
+FEWEST, STEEPEST = 3.2, 2.15
+# Factor by which the error on a grid that a warning names is smaller: 2 % of the peak pressure, with a margin. It falls
+# with the square of the intervals across the peak, and with the narrowing less one. Larger: finer grids.
+FINER = 3.5
+ENOUGH = FEWEST * math.sqrt(FINER)
+# Least number of rows of that grid, with `LARGEST_STRETCH`: errors of 4 % on 24, and of up to 15 % without this limit.
+FEWEST_ROWS = 48
 # Largest grid that a warning names. Beyond it one film takes seconds.
 MOST_COLUMNS, MOST_ROWS = 2000, 200
 
@@ -109,7 +108,8 @@ def resolution(film: SolvedFilm) -> Resolution:
         (float(H[k, row + way] / H[k, row]), k, row, abs(float(z[row + way] - z[row])))
         for k, row, way in ((places[0], 0, 1), (places[1], last, -1))
     ]
-    near = [end for end, distance in zip(ends, (j, last - j), strict=True) if distance <= NEAR]
+    # the peak is next to an end if the pressure one interval before the end is above half of it
+    near = [end for end, row in zip(ends, (1, last - 1), strict=True) if P[i, row] > 0.5 * P[i, j]]
     steepest = max(near, default=(1.0, i, j, 1.0))
     return Resolution(
         columns, intervals_at_half(P[i], j), steepest[0], max(end[0] for end in ends), _wanted(film, columns, *steepest)
@@ -127,14 +127,15 @@ def _wanted(
     if not isinstance(own, FiniteLength):
         return None
     rows, stretch = own.n_z, own.stretch
-    if narrowing > EVEN:
+    if narrowing > 1.0 + SMALL:  # a film that is even along the bearing keeps its rows
         # half the length over n_z, times this number, is the end interval with the stretch
-        last = math.pi * STRETCH / math.tan(0.5 * math.pi * STRETCH)
-        needed = last * film.parts.half_length / interval * (narrowing - 1.0) / GENTLE
-        rows, stretch = max(rows, FEWEST_ROWS, 2 * math.ceil(0.5 * needed)), STRETCH
+        last = math.pi * LARGEST_STRETCH / math.tan(0.5 * math.pi * LARGEST_STRETCH)
+        needed = last * film.parts.half_length / interval * FINER * (narrowing - 1.0) / (STEEPEST - 1.0)
+        rows, stretch = max(rows, FEWEST_ROWS, 2 * math.ceil(0.5 * needed)), LARGEST_STRETCH
         bend = float(H[(k + 1) % n, row] - 2.0 * H[k, row] + H[k - 1, row])
         if bend > 0.0:
-            across = min(across, PEAK_WIDTH * math.sqrt(2.0 * H[k, row] / bend))
+            # length over which a thin film grows to twice its thickness; the peak is up to a quarter wider
+            across = min(across, math.sqrt(2.0 * H[k, row] / bend))
     columns = max(ring, 8 * math.ceil(ENOUGH * ring / (8.0 * max(across, 1e-3))))
     if columns > MOST_COLUMNS or rows > MOST_ROWS:
         return None
@@ -188,21 +189,22 @@ def intervals_at_half(values: np.ndarray, peak: int) -> float:
     return width
 
 
-# Least size of d in a zigzag: over the force there, and over the largest force before it, which counts less by this
-# factor per step. Larger: weaker alternations are ignored.
-LOCAL_SHARE, LARGEST_SHARE, FADING = 0.1, 0.01, 0.99
+# Least size of d in a zigzag: over the force there, and over the largest force of some `WINDOW` steps before it.
+# Larger: weaker alternations are ignored.
+LOCAL_SHARE, LARGEST_SHARE = 0.1, 0.01
 # Least component of the neighbouring d against d, over d. Larger: only even alternations count as zigzags.
 EVEN_ALTERNATION = 0.3
 # Mean pressure on the projected area, Pa, below which d is ignored as round-off next to an ideal joint.
 NEGLIGIBLE = 100.0
-# Limits of a burst: least strength over that of the five steps before, in which no burst may lie; or least share of the
-# last burst's strength after this many zigzags. Larger values: fewer bursts are counted.
-STRONGER, KEPT, LASTING = 1.5, 0.75, 20
+# Least strength of a burst over that of the five steps before, in which no burst may lie; an alternation that has not
+# fallen by this factor lasts. Larger: fewer bursts are counted.
+STRONGER = 1.5
 # Number of steps in which bursts are counted together, and number of bursts in it from which on a run rings.
 WINDOW, LIMIT = 100, 4
-# Limits of a force that throws masses: least ratio to its mean, least pressure on the projected area in Pa, least share
-# of the largest force. A run that rings ends at `LASTING` such forces within the window.
-PROPORTION, HEAVY, STRONG_SHARE = 10.0, 1e6, 0.3
+# Pressure on the projected area, Pa, below which a force throws no masses. Those that do have a mean of less than
+# `LOCAL_SHARE` of them, and are more than this share of the largest force. A run that rings ends at
+# `RingingWatch.lasting` such forces within the window.
+HEAVY = 1e6
 
 
 class RingingWatch:
@@ -217,6 +219,8 @@ class RingingWatch:
     ----------
     most : int
         Most bursts within `WINDOW` steps.
+    lasting : int
+        Zigzags after which an alternation that lasts is another burst: more than `LIMIT` bursts lie in the window then.
     first, last : float
         Times of the first and the last burst, s; nan without one.
     rings : bool
@@ -226,7 +230,7 @@ class RingingWatch:
     """
 
     def __init__(self, area: float) -> None:
-        self.smallest, self.heavy = NEGLIGIBLE * area, HEAVY * area
+        self.smallest, self.heavy, self.lasting = NEGLIGIBLE * area, HEAVY * area, WINDOW // (LIMIT + 1)
         self.begin_anew()
 
     def begin_anew(self) -> None:
@@ -237,7 +241,7 @@ class RingingWatch:
         self._states: deque[tuple[float, float, float, float]] = deque(maxlen=4)
         self._bends: deque[tuple[float, float, float, float]] = deque([(0.0, 0.0, 0.0, 0.0)] * 8, maxlen=8)
         self._bursts: deque[int] = deque()
-        self._throws: deque[int] = deque([-WINDOW] * LASTING, maxlen=LASTING)
+        self._throws: deque[int] = deque([-WINDOW] * self.lasting, maxlen=self.lasting)
         self.worst = (0.0, 0.0)
         self._step = self._zigzags = 0
         self._largest = self._strength = 0.0
@@ -263,7 +267,7 @@ class RingingWatch:
             states = self._states
         states.append((time, x, y, z))
         self._step += 1
-        self._largest = max(math.hypot(x, y, z), FADING * self._largest)
+        self._largest = max(math.hypot(x, y, z), self._largest - self._largest / WINDOW)
         if len(states) < 3:
             return False
         (t_2, x_2, y_2, z_2), (t_1, x_1, y_1, z_1) = states[-3], states[-2]
@@ -271,9 +275,9 @@ class RingingWatch:
         dx, dy, dz = x_1 - x_2 - share * (x - x_2), y_1 - y_2 - share * (y - y_2), z_1 - z_2 - share * (z - z_2)
         self._bends.append((dx, dy, dz, math.hypot(dx, dy, dz)))
         force = math.hypot(x_1, y_1, z_1)
-        if force > self.heavy and force > STRONG_SHARE * self._largest:
+        if force > self.heavy and force > LOCAL_SHARE * self._largest:
             mean = math.hypot(x_1 - 0.5 * dx, y_1 - 0.5 * dy, z_1 - 0.5 * dz)
-            if force > PROPORTION * mean:
+            if mean < LOCAL_SHARE * force:
                 self._throws.append(self._step)
                 self.worst = max(self.worst, (force, mean))
         if not self._zigzag():
@@ -294,7 +298,7 @@ class RingingWatch:
         if self._bursts and self._step - self._bursts[-1] < len(before):
             return False
         strength = max(a, b, c)
-        lasting = self._zigzags >= LASTING and strength > KEPT * self._strength
+        lasting = self._zigzags >= self.lasting and STRONGER * strength > self._strength
         if not (lasting or strength > STRONGER * max(before)):
             return False
         self._strength = strength
@@ -314,7 +318,7 @@ class RingingWatch:
 
     @property
     def throws(self) -> bool:
-        """Return whether the run rings and `LASTING` forces within the window have thrown masses."""
+        """Return whether the run rings and `lasting` forces within the window have thrown masses."""
         return self.rings and self._throws[0] > self._step - WINDOW
 
 

@@ -17,14 +17,15 @@ from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import Status
 
 # Recorded steps that are evaluated again before a state, so that the film's memory no longer depends on its start:
-# number of last steps, steps per turn before them, and number of turns in a rigid and in a flexible bore. Larger:
+# number of last steps, and of steps per turn before them; number of turns in a rigid and in a flexible bore. Larger:
 # slower audits.
-REPLAYED, A_TURN, TURNS = 60, 80, (3.0, 1.0)
+REPLAYED, TURNS = 80, (3.0, 1.0)
 # Least amplitude of a squeezing journal at a single state, over the clearance. Larger: lower frequencies are estimated
 # for journals near the centre; smaller: higher ones.
 AMPLITUDE = 0.1
-# Radial deflection of a steel ring under the peak pressure, over R p / E; under a uniform pressure it is half of this.
-RING_COMPLIANCE = 0.7
+# Radial deflection of steel under the peak pressure, over R p / E: that of a ring, half of it under a uniform pressure;
+# that of a free solid pin is 0.6. Larger: elasticity is found to matter more often.
+STEEL_COMPLIANCE = 0.7
 
 Sources = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Sources of Reynolds' equation of motions (n, k), at e places: both ends of a journal or the centre of a ball.
@@ -158,12 +159,12 @@ def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmStat
 
 
 def _replayed(turned: np.ndarray, first: int, last: int) -> list[int]:
-    """Numbers of steps from ``first`` to ``last``: all of the last `REPLAYED`, and `A_TURN` per turn before them.
+    """Numbers of steps from ``first`` to ``last``: all of the last `REPLAYED`, and as many per turn before them.
 
     ``turned`` (n,): angle that the journal has turned up to each step, rad.
     """
     recent = max(first, last - REPLAYED)
-    early = np.searchsorted(turned, np.arange(turned[first], turned[recent], 2.0 * math.pi / A_TURN))
+    early = np.searchsorted(turned, np.arange(turned[first], turned[recent], 2.0 * math.pi / REPLAYED))
     return np.unique(np.concatenate([np.maximum(early, first), np.arange(recent, last + 1)])).tolist()
 
 
@@ -288,7 +289,7 @@ def film_numbers(model: BearingModel, evaluation: Evaluation) -> dict[str, float
         "tension": float(np.sum(weight[film.oil.P * film.scales.pressure < VAPOUR_PRESSURE])),
         "tilt_loss": float(tilt_loss(b, w.motion[None])[0]),
         "deflection": q.get("bore_displacement", 0.0),
-        "compliance": RING_COMPLIANCE * b.journal_radius / STEEL["youngs_modulus"],
+        "compliance": STEEL_COMPLIANCE * b.journal_radius / STEEL["youngs_modulus"],
         "shape": _shape(film),
     }
 

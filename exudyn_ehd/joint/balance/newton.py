@@ -44,16 +44,13 @@ from exudyn_ehd.status import ROUNDING, SMALL, FilmError, Status
 # Tolerance of the unbalance, as a share of the load. A temperature's change, as a share of the film's rise over its
 # coldest source, has the tolerance `SETTLED`, or `ROUNDING` where round-off stops the search before.
 LOAD_TOLERANCE = 1e-10
-# Largest number of rounds of a search; number of rounds from a film nearby, and of rounds in a row whose error does not
-# fall below `FALLS` times the smallest error. Larger: a hopeless search gives up later; smaller: slow ones fail.
+# Largest number of rounds of a search; number of rounds from a film nearby, of rounds in a row whose error does not
+# fall below `FALLS` times the smallest error, and of past rounds that Anderson's acceleration combines. Larger: a
+# hopeless search gives up later; smaller: slow ones fail.
 ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
-# Damping factor of the temperature's steps, below which a search without progress gives up.
-WEAKEST = 0.1
 # Changes of the temperature in K: the largest one in a round, of the same scaled size as a move by the clearance;
 # the one below which Anderson's acceleration is used.
 LARGEST_CHANGE, ACCELERATED = 50.0, 5.0
-# Largest number of differences of past rounds that Anderson's acceleration combines.
-DEPTH = 20
 # Temperature in K above which a search fails. It is far above `HOTTEST`, because films during a search may be hotter
 # than the solution.
 DIVERGED = 2000.0
@@ -241,11 +238,11 @@ class Balance:
             if self.is_balanced(here, tolerance, SETTLED) or spent:
                 break
             if idle > PATIENCE:
-                if not here.change.size or damping < WEAKEST:
+                if not here.change.size:
                     break
                 here, past, idle, damping = best, [], 0, 0.6 * damping
             step = self._step(here, resistance)
-            past = [*past, (self._unknowns(here), step)][-min(DEPTH, step.size) - 1 :]
+            past = [*past, (self._unknowns(here), step)][-min(PATIENCE, step.size) - 1 :]
             if not here.change.size or np.abs(here.change).max() >= ACCELERATED:
                 past = []
             accelerated = damping * step - (foreseen(past, damping) if len(past) > 1 else 0.0)

@@ -13,6 +13,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief
 from exudyn_ehd.joint.balance.limits import HOTTEST, WAY_OUT, hottest, is_above, too_hot
 from exudyn_ehd.joint.balance.newton import (
+    FREE_STEP,
     LOAD_TOLERANCE,
     PATIENCE,
     ROUNDS,
@@ -21,15 +22,14 @@ from exudyn_ehd.joint.balance.newton import (
     gaps_of_arcs,
 )
 from exudyn_ehd.joint.bore.equilibrium import HALVINGS
+from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import SMALL, FilmError, InputError, warn_user
 
-# Eccentricity ratio, in the direction of the load, from which a second search by damped steps starts. Larger: thinner
-# gaps and larger cavities at the start, with which damped steps fail more often.
-INSIDE = 0.3
 # First and smallest step of the continuation from small loads, as shares of the load. Smaller: slower, fails less
 # often.
 FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.01
-# Smallest gap over the clearance below which an error message says that the journal lies on the edge of an arc.
+# Gap over the clearance below which surfaces count as touching: a journal lies on the edge of an arc, says an error
+# message, and errors of time steps are no longer relative to the film. Larger: more often.
 CLOSED = 0.01
 
 
@@ -42,7 +42,7 @@ class LoadSearch(Balance):
     2. `climb`, for loads that grow from a quarter of the whole: only if the film has a temperature and no film ``near``
        is known. If it reaches a part of the load, the search ends here;
     3. damped steps from the given motion;
-    4. damped steps from inside the bearing, `INSIDE`;
+    4. damped steps from one longest step, `FREE_STEP`, along the load from the centre, where no cavity is large;
     5. in a lobed bearing, damped steps from `opposed`.
 
     Attributes
@@ -68,7 +68,7 @@ class LoadSearch(Balance):
         found = self.attempt(motion, start)
         if found is None and near is None and self.thermal is not None:
             carried, found = self.climb(motion)
-        places = (lambda: motion, partial(self.loaded, motion, INSIDE), partial(self.opposed, motion, start))
+        places = (lambda: motion, partial(self.loaded, motion, FREE_STEP), partial(self.opposed, motion, start))
         for place in places[: 2 + self.model.bearing.is_lobed] if carried == 0.0 else ():
             if found is None:
                 found = self.attempt(place(), start, self.held_back)
@@ -304,9 +304,6 @@ def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: 
 # Eccentricity ratio, in the direction of the load, from which another position is searched. Larger: nearer to a closed
 # gap.
 LOADED = 0.9
-# Distance over the clearance up to which two positions count as the same: where the stiffness is nearly singular, a
-# load in balance to its tolerance leaves a position far less accurate. Larger: two positions may be taken for one.
-SAME_PLACE = 1e-3
 STEADINESS = (
     "has a negative determinant: a journal does not stay there",
     "is not positive definite: the damping decides whether a journal stays",
@@ -333,13 +330,14 @@ def steadiest(search: LoadSearch, found: Place) -> Place:
     if search.model.effects.thermal is not None or steady == 2 or (steady == 1 and not several):
         return found
     places = [found]
-    for ratio in (LOADED, INSIDE):
+    for ratio in (LOADED, FREE_STEP):
         start = search.loaded(found.motion, ratio)
         other = search.attempt(start, found.temperature, search.held_back)
         if other is None:
             continue
         away = min(float(np.hypot(*(other.motion - place.motion)[:2])) for place in places)
-        if away > SAME_PLACE * b.radial_clearance:
+        # where the stiffness is nearly singular, a load in balance leaves a position far less accurate
+        if away > SMALLEST_GAP_SHARE * b.radial_clearance:
             places.append(other)
     best = max(places, key=_steadiness)
     if len(places) > 1 or _steadiness(best) == 0:

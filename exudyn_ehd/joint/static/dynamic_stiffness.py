@@ -42,11 +42,13 @@ from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import LARGEST_SPREAD, MOTION_SIZE, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import Balances, load_columns
 from exudyn_ehd.joint.tangent.wrench import balance_gradients, true_fills, wrench_rows
-from exudyn_ehd.status import FilmError
+from exudyn_ehd.status import ROUNDING, FilmError
 
-# Range of whirl ratios in which a threshold is searched, and number of samples in it; for journal bearings the whirl
-# ratio is near one half. More samples: fewer missed thresholds, slower.
-SLOWEST, FASTEST, STEPS = 0.05, 2.0, 24
+# Range of whirl ratios in which a threshold is searched; for journal bearings the whirl ratio is near one half.
+SLOWEST, FASTEST = 0.05, 2.0
+# Number of values, in a range of frequencies or speeds, at which a search for a threshold begins. More: fewer missed
+# thresholds, slower.
+SCAN = 16
 # Whirl ratios at which the response of a bore with many coordinates is computed, to reduce them to the space of these
 # responses; also frequencies over the rates at which the pressures of supply areas settle. Fewer: larger error. Error
 # of the critical mass of soft bushes 2e-9, of Z from 0 to 4 times the spin 5e-7.
@@ -58,9 +60,6 @@ RAYS = np.outer((0.1, 0.4, 1.0, 2.5, 6.0, 15.0, 60.0, 300.0), np.exp(1j * np.rad
 # Map (4, 6) from a wrench to the loads that do work on a journal's coordinates x, y, bx, by: F_x, F_y, M_y, -M_x.
 LOADS = np.eye(6)[[0, 1, 4, 3]] * [[1.0], [1.0], [1.0], [-1.0]]
 PLACES = len(LOADS)
-
-# Round-off: of the k in `whirl_threshold`, over the largest stiffness; of a direction in a space of responses.
-ROUNDING = 1e-12
 
 
 def slow_motions(tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -255,9 +254,7 @@ def _real_space(found: list[np.ndarray]) -> np.ndarray:
     """Orthonormal basis (n, p) of the real and imaginary parts of complex columns (n, m), up to round-off."""
     columns = np.concatenate([part for some in found for part in (some.real, some.imag)], axis=1)
     lengths = np.linalg.norm(columns, axis=0)
-    basis, sizes, _ = np.linalg.svd(columns[:, lengths > 0.0] / lengths[lengths > 0.0], full_matrices=False)
-    space: np.ndarray = basis[:, sizes > ROUNDING * sizes.max(initial=0.0)]
-    return space
+    return np.asarray(scipy.linalg.orth(columns[:, lengths > 0.0] / lengths[lengths > 0.0]))
 
 
 class FilmMemory(NamedTuple):
@@ -380,10 +377,10 @@ def threshold(
         found = np.linalg.eigvals(stiffness(frequency)[:2, :2])
         return found[np.argsort(found.imag)]
 
-    nu = omega * np.geomspace(SLOWEST, FASTEST, STEPS)
+    nu = omega * np.geomspace(SLOWEST, FASTEST, SCAN)
     if rates.size:
         low, high = min(nu[0], rates.min() * SLOWEST**2), max(nu[-1], min(rates.max() / SLOWEST**2, fastest))
-        nu = np.geomspace(low, high, math.ceil(STEPS * math.log(high / low) / math.log(FASTEST / SLOWEST)))
+        nu = np.geomspace(low, high, math.ceil(SCAN * math.log(high / low) / math.log(FASTEST / SLOWEST)))
     imag, found = np.array([values(frequency).imag for frequency in nu]), []
     for k, q in np.argwhere(np.diff(np.sign(imag), axis=0)):
         frequency = scipy.optimize.brentq(lambda nu, q=q: values(nu)[q].imag, nu[k], nu[k + 1], rtol=1e-9)

@@ -37,20 +37,18 @@ from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import ROUNDING, SMALL, FilmError, InputError, require_number, warn_user
 
 WHERE = "equilibrium"
-# Number of positions after which a search begins no further start; force on a pad, over the load, above which the pad
-# counts as carrying.
-MOST_PLACES, CARRIES = 400, 0.01
+# Force on a pad, over the load, above which the pad counts as carrying.
+CARRIES = 0.01
 # Positions between the tilts at which an edge touches (0 and 1), at which the moment is evaluated first. More: a
 # balance is missed less often, slower.
 PLACES = (0.98, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1, 0.02)
-# Offsets from the position with the largest moment, for a second series of evaluations around it.
-BETWEEN = np.linspace(0.08, -0.08, 9)
 # Eccentricities of initial guesses along the load, over the assembled clearance, and distances from an unstable
 # position; more of them: a start nearer to the solution. If all fail, directions of further initial guesses from the
 # load, because a load may push the journal of a bearing with few pads between two of them.
 STARTS = np.array([0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.05, 1.3, 1.6, 1.9])
 TURNS = np.exp(1j * np.array([0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9]))
-# Number of initial guesses, those with the smallest unbalance, from which a search is made.
+# Number of initial guesses, those with the smallest unbalance, from which a search is made. After as many times
+# `ROUNDS` positions no further search begins.
 MOST_STARTS = 2
 
 
@@ -76,7 +74,8 @@ def settled(pad: Pad, journal: np.ndarray, shift: float, tipped: bool) -> PadLoa
                 best = max(best, (sense * float(here.forces[2]), place))
             above = tilt
         # a moment that is positive between two places only
-        places = tuple(np.clip(best[1] + BETWEEN, 0.01, 0.99))
+        reach = PLACES[1] - PLACES[2]
+        places = tuple(np.clip(np.linspace(best[1] + reach, best[1] - reach, len(PLACES)), 0.01, 0.99))
     resting = pad.at(journal, shift, widening)
     return None if resting is None else resting._replace(loaded=False)
 
@@ -185,7 +184,7 @@ class PadSearch:
         along = complex(*self.load) / max(float(np.hypot(*self.load)), 1e-300) * self.bearing.radial_clearance
         unmoved, found = np.zeros(self.bearing.pads if self.moves else 0), []
         for k in range(self.bearing.pads + 1 if np.any(along) else 1):
-            if self.count > MOST_PLACES:
+            if self.count > MOST_STARTS * ROUNDS:
                 break
             places = np.outer(TURNS if k == 1 else TURNS[:1], STARTS if np.any(along) else STARTS[:1]).ravel() * along
             tried = [self.at(np.array([place.real, place.imag, *unmoved])) for place in places]

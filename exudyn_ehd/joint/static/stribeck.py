@@ -18,9 +18,9 @@ from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.steady import require_rest
 from exudyn_ehd.status import ROUNDING, FilmError, InputError, require_number, require_plausible, require_type
 
-# Smallest ratio of two successive speeds without an intermediate one; change of temperature, K, from which on an
-# intermediate speed is added: it changes the viscosity by a tenth. Larger ratio and smaller change: more film solves.
-NEXT, LEAP = 0.9, 3.0
+# Smallest ratio of successive speeds, and of the mean viscosities there, without an intermediate speed. Larger: more
+# film solves.
+NEXT = 0.9
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,9 +163,9 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
 def _follow(search: LoadSearch, before: Place | None, start: np.ndarray, speed: float) -> Place:
     """Find the equilibrium at a speed by continuation from the last speed, in steps of the speed's logarithm.
 
-    The first equilibrium starts from a motion (10,). If the temperature changes by more than `LEAP`, the step is
-    halved, because the branch of solutions may have ended or the search may have left it. If the change remains in the
-    shortest step, the branch has ended, and the other one is accepted.
+    The first equilibrium starts from a motion (10,). If the temperature changes the viscosity by more than `NEXT`, the
+    step is halved, because the branch of solutions may have ended or the search may have left it. If the change remains
+    in the shortest step, the branch has ended, and the other one is accepted.
     """
     first = start if before is None else before.motion
     last, failure = float(first[8]), None
@@ -181,7 +181,7 @@ def _follow(search: LoadSearch, before: Place | None, start: np.ndarray, speed: 
         except FilmError as error:
             failure = error
             return None
-        return None if here is not None and not final and _leap(here, found) > LEAP else found
+        return None if here is not None and not final and _leaps(search, here, found) else found
 
     reached, found = continued(reach, 1.0, math.log(NEXT) / way)
     if found is None or reached < 1.0:
@@ -192,10 +192,12 @@ def _follow(search: LoadSearch, before: Place | None, start: np.ndarray, speed: 
     return found
 
 
-def _leap(before: Place, found: Place) -> float:
-    """Change of the mean temperature, K."""
-    one, other = before.film.temperature, found.film.temperature
-    return 0.0 if one is None or other is None else abs(float(np.mean(other)) - float(np.mean(one)))
+def _leaps(search: LoadSearch, before: Place, found: Place) -> bool:
+    """Return whether the mean viscosity differs by more than `NEXT` between two films."""
+    if search.thermal is None:
+        return False
+    one, other = (float(search.thermal.viscosity_ratio(place.temperature).mean()) for place in (before, found))
+    return min(one, other) < NEXT * max(one, other)
 
 
 def _row(evaluation: Evaluation, speed: float, load: float) -> dict[str, float | np.ndarray]:

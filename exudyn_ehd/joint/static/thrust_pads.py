@@ -29,18 +29,14 @@ import numpy as np
 from exudyn_ehd.film.loads import refined_peak
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
-from exudyn_ehd.joint.balance.newton import LOAD_TOLERANCE, ROUNDS
+from exudyn_ehd.joint.balance.newton import LOAD_TOLERANCE, ROOM, ROUNDS
 from exudyn_ehd.joint.bore.equilibrium import HALVINGS
+from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_number
 
 WHERE = "equilibrium"
 ALONG = "of TiltingThrustPads it presses the collar onto the pads along the axis."
-# Initial guesses of the gap at the trailing edge over that at the pivot, tried in this order.
-STARTS = (0.6, 0.85, 0.3)
-# Ratio of the largest to the smallest gap, below which a solution is rejected: it would carry by a vanishing gap, not
-# by a wedge.
-LEAST_WEDGE = 1.001
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -178,22 +174,23 @@ class ThrustPadSearch:
         tangent = self.by_wrench @ self.film.tangent()
         return -tangent[:, :3] @ self.by_v, -tangent[:, 3:6] @ self.by_v
 
-    def find(self, trailing: float) -> tuple[np.ndarray, FaceState, np.ndarray] | None:
+    def find(self) -> tuple[np.ndarray, FaceState, np.ndarray] | None:
         """Find coordinates, film and residuals of an equilibrium; None without one.
 
-        ``trailing``: initial guess of the gap at the trailing edge over that at the pivot.
+        Initial guess: a step of the largest size, `ROOM`, has closed the gap at the trailing edge of a parallel pad.
         """
         pads, L = self.pads, self.pads.outer_radius
         behind = pads.extent - pads.pivot_angle if self.speed > 0.0 else pads.pivot_angle
-        tilt = math.copysign((1.0 - trailing) / (pads.pivot_radius * math.sin(min(behind, 1.0))), self.speed)
+        tilt = math.copysign(ROOM / (pads.pivot_radius * math.sin(min(behind, 1.0))), self.speed)
         v = pads.pivot_film * np.array([1.0, tilt, 0.0])
         found, r = self.at(v)
         for _ in range(ROUNDS):
             if not np.isfinite(r[0]):
                 return None
             if np.abs(r).max() < LOAD_TOLERANCE:
-                gap = self.film.gap
-                return (v, found, r) if gap.max() > LEAST_WEDGE * gap.min() else None
+                # a gap that is even would carry by vanishing, not by a wedge
+                wedge = np.ptp(self.film.gap) / self.film.gap.min()
+                return (v, found, r) if wedge > SMALLEST_GAP_SHARE else None
             rows = -self.matrices()[0] / (self.load * math.exp(r[0]))
             rows[1:] = rows[1:] / L - np.outer(r[1:], rows[0])
             step = np.linalg.solve(rows @ np.column_stack([v, v[0] / L * np.eye(3)[:, 1:]]), -r)
@@ -225,10 +222,9 @@ def equilibrium_of_pads(
         )
     carried = require_number(f"{WHERE}: load", load, "N", above=0.0, hint=ALONG)  # type: ignore[arg-type]
     search = ThrustPadSearch(pads, speed, carried / pads.pads)
-    for trailing in STARTS:
-        place = search.find(trailing)
-        if place is not None and np.linalg.eigvals(search.matrices()[0][1:, 1:]).real.min() > 0.0:
-            return _result(search, *place)
+    place = search.find()
+    if place is not None and np.linalg.eigvals(search.matrices()[0][1:, 1:]).real.min() > 0.0:
+        return _result(search, *place)
     raise FilmError(
         f"{WHERE}: no film was found in which TiltingThrustPads carry {carried:.4g} N at {speed:.4g} rad/s with their "
         f"pivot {pads.pivot_angle / pads.extent:.3g} of the extent behind the leading edge of a positive spin: plane "
