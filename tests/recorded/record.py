@@ -52,9 +52,9 @@ QUANTITIES = (
     "stored_power",
     "supply_flow",
 )
-# of a film's memory; no bearing here has pockets behind restrictors, or a sump, and the temperatures of the next step
-# show those of the last one's change
-_OTHERS = ("pockets", "sump", "leaving", "heating", "last_step")
+# of a film's memory; no bearing here has pockets behind restrictors, or a sump; temperatures and voids of the next step
+# show the rates of the last one
+_OTHERS = ("pockets", "sump", "leaving", "heating", "last_step", "growth")
 FIELDS = tuple(f.name for f in dataclasses.fields(History) if f.name not in _OTHERS)
 LOADS = tuple(f"force {x}" for x in "xyz") + tuple(f"moment {x}" for x in "xyz") + ("load 1", "load 2")
 COLUMNS = (

@@ -48,6 +48,8 @@ LOAD_TOLERANCE = 1e-10
 # fall below `FALLS` times the smallest error, and of past rounds that Anderson's acceleration combines. Larger: a
 # hopeless search gives up later; smaller: slow ones fail.
 ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
+# Damping factor of steps below which a search without progress gives up. Smaller: hopeless searches take longer.
+WEAKEST = 0.1
 # Changes of the temperature in K: the largest one in a round, of the same scaled size as a move by the clearance;
 # the one below which Anderson's acceleration is used.
 LARGEST_CHANGE, ACCELERATED = 50.0, 5.0
@@ -238,7 +240,7 @@ class Balance:
             if self.is_balanced(here, tolerance, SETTLED) or spent:
                 break
             if idle > PATIENCE:
-                if not here.change.size:
+                if not here.change.size or damping < WEAKEST:
                     break
                 here, past, idle, damping = best, [], 0, 0.6 * damping
             step = self._step(here, resistance)
