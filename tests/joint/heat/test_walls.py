@@ -246,12 +246,46 @@ def test_oil_is_kept_while_the_walls_grow():
     for _ in range(30):
         evaluation = model.evaluate(at, history, 1e-2)
         new = evaluation.history()
-        grown = (thermal.opening(new.temperature) - thermal.opening(history.temperature)) / C
-        content = model.solver.H + grown - new.void
+        content = model.solver.H - new.void
         missing.append(float(np.sum((new.mass - content) * model.solver.area)))
         history = new
     assert thermal.opening(history.temperature) < -0.02 * C
     assert np.abs(missing).max() < 1e-10
+
+
+GROWING = {
+    "walls that warm up": {"thermal": {"initial_temperature": None}},
+    "a bush that cools": {"thermal": {"initial_temperature": 350.0}},
+    "wear": {
+        "asperity": ehd.GreenwoodTripp(composite_roughness=1e-6, composite_modulus=1.1e11),
+        "wear": ehd.ArchardWear(wear_rate=1e-14),
+    },
+}
+
+
+@pytest.mark.parametrize("name", GROWING)
+def test_short_steps_after_growth(name):
+    """While the gap grows, forces of a step that gets shorter tend to those of the long step, and to the instant's.
+
+    The bush that cools changes the force by 0.6 % in the next long step.
+    """
+    options, thin = dict(GROWING[name]), name == "wear"
+    if "thermal" in options:
+        bush = ehd.Conduction(thickness=0.005, conductance=1.0, expansion=1e-5, **options["thermal"])
+        options["thermal"] = energy(bush=bush)
+    else:
+        options["thermal"] = None
+    keeps = ehd.ElrodAdams(cavity_pressure=-1e5)
+    model = build_model(bearing(**options, cavitation=keeps, film=ehd.FiniteLength(n_theta=48, n_z=6)))
+    at = motion(0.965 if thin else 0.6)
+    history = model.initial_history(at)
+    for _ in range(60):
+        found = model.evaluate(at, history, 2.5e-4)
+        history = found.history()
+    assert np.abs(history.growth).max() > 0.0
+    force = found.wrench[:2]
+    for step in (2.5e-4, 1e-6, 1e-9, 0.0):
+        np.testing.assert_allclose(model.evaluate(at, history, step).wrench[:2], force, atol=1e-2 * np.hypot(*force))
 
 
 def test_carry_over_at_a_groove():
