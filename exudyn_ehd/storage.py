@@ -35,7 +35,7 @@ from exudyn_ehd.status import EHDError, InputError
 CACHE_VARIABLE = "EXUDYN_EHD_CACHE"
 # Version of all algorithms whose results are kept: raise it with every change of their results, so that older files are
 # not used.
-FORMAT = 8
+FORMAT = 7
 # Bytes of all arrays kept.
 LARGEST_CACHE = 3e8
 

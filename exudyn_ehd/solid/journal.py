@@ -282,7 +282,7 @@ class _Reduction:
             answer = self.body.solve(n, load, self.held)
             root = np.concatenate((part.real, part.imag), axis=1) / np.sqrt(2.0)
             if n == 0:
-                root = block_diag(np.eye(1 + tilted) / films.NOTICED, part.real)
+                root = block_diag(films.CERTAIN * np.eye(1 + tilted), part.real)
             coefficients, size = films.leading_modes(answer[:, :c].T @ load[:, :c], root)
             profile, work = answer[self.surface], coefficients @ (answer[:, :c].T @ load[:, c:])
             combinations.append(coefficients)
@@ -344,7 +344,7 @@ class _Reduction:
     def _measuring(self) -> np.ndarray:
         """Parts (waves, 2 t, elements, 3) of the t measuring films with cos(n theta) and sin(n theta)."""
         # angles at which sampled films are taken apart into waves
-        angles = films.AROUND
+        angles = films.FIT[0]
         theta, zeta = 2.0 * np.pi * np.arange(angles) / angles, np.where(self.loaded, self.zeta, 0.0)
         pressures = films.measuring_pressures(theta, zeta[..., None], self.journal.tilted)
         parts = np.fft.rfft(pressures)[..., : self.waves + 1] * (2.0 / angles) * self.loaded[..., None]

@@ -54,7 +54,7 @@ from scipy.linalg import block_diag, eigh
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.solid.mesh import Surface, directed
-from exudyn_ehd.status import ROUNDING, InputError
+from exudyn_ehd.status import InputError
 
 # With every change of what follows, raise `exudyn_ehd.storage.FORMAT`.
 LARGEST_WAVE, LARGEST_AXIAL = 32, 10
@@ -76,13 +76,17 @@ BEYOND = (2, 4, 6, 8, 10)
 # Smallest share of a half space's displacement in the whole that makes the tolerance tighter. A smaller one takes more
 # modes of bushes on a narrow foot.
 LEAST_SHARE = 0.05
+# Share of the energy below which a combination of pressures adds nothing but round-off.
+DEPENDENT = 1e-11
+# Weight of uniform and linear pressures over that of all films: their modes leave no more than its inverse of them.
+CERTAIN = 1e3
 # Share of the displacements from which others get modes: what is odd along the axis under films that are even, and what
 # a uniform traction around the bore moves radially, over pressures of the same size. Where the latter is smaller, the
-# film's shear, a hundredth of its pressure, moves the bore by 1e-4 of what the pressure does. Modes leave no more than
-# this share of uniform and linear pressures, whose weight over that of all films is its inverse.
+# film's shear, a hundredth of its pressure, moves the bore by 1e-4 of what the pressure does.
 NOTICED = 0.01
-# Points around and along in the fit of films by candidates, and least number of points on the film's surface: beyond
-# the orders of the pressures. With 256 and 64, the same number of modes was found for 12 bushes.
+# Vertices around and along of the fit of films by candidates.
+FIT = 256, 64
+# Least number of points around and along on the film's surface: beyond the orders of the pressures.
 AROUND, ALONG = 144, 16
 
 
@@ -234,7 +238,7 @@ def scale_of(beyond: np.ndarray, tilted: bool) -> np.ndarray:
 @lru_cache(maxsize=2)
 def half_space(tilted: bool) -> np.ndarray:
     """Displacement of a half space over its part beyond no and `BEYOND` waves under the measuring films (b, t)."""
-    theta, (zeta, weight) = 2.0 * np.pi * np.arange(AROUND) / AROUND, np.polynomial.legendre.leggauss(ALONG)
+    theta, (zeta, weight) = 2.0 * np.pi * np.arange(FIT[0]) / FIT[0], np.polynomial.legendre.leggauss(FIT[1])
     waves = np.fft.rfft(measuring_pressures(theta[:, None], zeta, tilted), axis=1)
     n = np.arange(waves.shape[1])
     size = (np.abs(waves) ** 2 @ weight) * np.where(n == 0, 0.5, 1.0) / np.maximum(n, 1) ** 2
@@ -268,10 +272,10 @@ def wave_parts(tilted: bool) -> np.ndarray:
 
     They are those of pressures of unit mean square times ``(1 + n)^-WAVE_WEIGHT``.
     """
-    theta, (zeta, weight) = 2.0 * np.pi * np.arange(AROUND) / AROUND, np.polynomial.legendre.leggauss(ALONG)
+    theta, (zeta, weight) = 2.0 * np.pi * np.arange(FIT[0]) / FIT[0], np.polynomial.legendre.leggauss(FIT[1])
     films = np.array([film.pressure(theta[:, None], zeta) for film in _films(SET, tilted, np.zeros(1))])
     films /= np.sqrt(np.mean(films**2 @ weight, axis=1) / 2.0)[:, None, None]
-    waves = np.fft.rfft(films, axis=1)[:, : LARGEST_WAVE + 1].conj() * (2.0 / AROUND)
+    waves = np.fft.rfft(films, axis=1)[:, : LARGEST_WAVE + 1].conj() * (2.0 / FIT[0])
     waves[:, 0] *= 0.5
     waves *= (1.0 + np.arange(LARGEST_WAVE + 1.0)[:, None]) ** -WAVE_WEIGHT
     root = np.sqrt(weight)
@@ -290,7 +294,7 @@ def covariance_root(tilted: bool) -> np.ndarray:
         both = np.block([[part.real, part.imag], [part.imag, -part.real]]) / np.sqrt(2.0)
         U, s, _ = np.linalg.svd(part.real if n == 0 else both, full_matrices=False)
         blocks.append(U * s)
-    return block_diag(np.eye(1 + tilted) / NOTICED, *blocks)
+    return block_diag(CERTAIN * np.eye(1 + tilted), *blocks)
 
 
 def leading_modes(compliance: np.ndarray, root: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -306,7 +310,7 @@ def leading_modes(compliance: np.ndarray, root: np.ndarray) -> tuple[np.ndarray,
     size = np.sqrt(np.diag(compliance))
     values, vectors = eigh(compliance / np.outer(size, size))
     # of more waves than the mesh has nodes for some depend on others
-    keep = values > ROUNDING * values[-1]
+    keep = values > DEPENDENT * values[-1]
     vectors, values = vectors[:, keep] / size[:, None], np.sqrt(values[keep])
     U, sizes, _ = np.linalg.svd((vectors * size[:, None] ** 2 * values).T @ root, full_matrices=False)
     return (vectors / values @ U).T, sizes
@@ -403,7 +407,7 @@ def film_modes(
         return film_modes(surface, solve, size, True, tolerance, without_rigid)
     moved, root = np.linalg.norm(seen, axis=0), covariance_root(tilted)
     if moved[0] > NOTICED * moved[1 : 1 + count].max():
-        count, root = count + 1, block_diag(1.0 / NOTICED, root)
+        count, root = count + 1, block_diag(CERTAIN, root)
     else:
         solutions, loads, seen = solutions[:, 1:], loads[:, 1:], seen[:, 1:]
     candidates, exact = solutions[:, :count], seen[:, count:]
@@ -418,4 +422,4 @@ def orthogonal_on(shapes: np.ndarray) -> np.ndarray:
     """Turn (r, k) of modes (k, p) that makes them orthogonal, the largest first; those that vanish are dropped."""
     size, turn = eigh(shapes @ shapes.T)
     # waves that a coarse mesh can't show strain it and leave its bore where it is
-    return np.asarray(turn[:, size > ROUNDING * size[-1]][:, ::-1].T)
+    return np.asarray(turn[:, size > DEPENDENT * size[-1]][:, ::-1].T)
