@@ -135,7 +135,7 @@ def end_flows_around(turned, pressed, stored, squeezed, full, flow_out, entering
         Where the end pressure is above the cavity pressure and the film next to it is full.
     """
     n, way = turned.size, 1 if turned.sum() >= 0.0 else -1
-    least, largest, change, carried = 0.0, np.inf, 0.0, 0.0
+    least, largest, change = 0.0, np.inf, 0.0
     for k in range(2 * n):
         i = way * k % n
         out, into = (i, i - 1) if way > 0 else (i - 1, i)
@@ -151,8 +151,10 @@ def end_flows_around(turned, pressed, stored, squeezed, full, flow_out, entering
             gain = most - q - stored[i]
             change += gain
             least, largest = min(max(least + gain, 0.0), whole), min(max(largest + gain, 0.0), whole)
-            carried = largest if change > 0.0 else least
             continue
+        if k == n:
+            # a loss per turn below the span of possible flows leaves one between them, continuous in the loss
+            begin = carried = largest + max(min(change, 0.0), least - largest)
         needed = whole - carried + q + stored[i]
         entering = min(needed, most)
         carried = whole - needed + entering
@@ -160,6 +162,11 @@ def end_flows_around(turned, pressed, stored, squeezed, full, flow_out, entering
             entering -= carried
             carried = 0.0
         flow_out[out], entering_out[i] = way * carried, entering
+    # what such a flow misses after a turn enters everywhere
+    for k in range(n):
+        i = way * k % n
+        entering_out[i] += (begin - carried) / n
+        flow_out[i if way > 0 else i - 1] += way * (begin - carried) * (k + 1) / n
 
 
 def content_rate(
