@@ -3,7 +3,6 @@
 Module map
 ----------
 solved_film  record of one evaluation, from which all modules below read
-plain_film   a film without further effects in one kernel
 time_step    rates of a step that agree with its positions; error of a step within which the load jumps
 step_error   error of the gap by the time steps of a run
 bore         shapes of an elastic bore and their balance

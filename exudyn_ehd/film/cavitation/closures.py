@@ -381,12 +381,6 @@ class FilmSystem:
         self.linear_pressure, self.continued = line.solved, line.continued
         self.flow_pressure = line.solved
 
-    def set_motion(self, steady: bool, rate: np.ndarray, vx: float, vz: float) -> None:
-        """Set ``closes`` and ``turns`` from the gap's rate (n, m) and the scaled speeds of a film that conserves
-        mass."""
-        self.closes = steady and bool(rate.min() < 0.0)
-        self.turns = abs(vx) if steady and vz == 0.0 else 0.0
-
     def take_density(self, density: DensityField) -> None:
         """Use a density that follows the pressure in all later solutions."""
         self.density = density

@@ -332,7 +332,8 @@ class FilmArrays:
         s = self.system
         if not self.closure.conserves_mass:
             return
-        s.set_motion(mass_old is None, self.H_t, self.vx, self.vz)
+        s.closes = mass_old is None and bool(self.H_t.min() < 0.0)
+        s.turns = abs(self.vx) if mass_old is None and self.vz == 0.0 else 0.0
         s.instant, s.inverse_step = mass_old is not None and step <= 0.0, 0.0
         if mass_old is not None:
             s.inverse_step = self.inverse_instant() if s.instant else 1.0 / step

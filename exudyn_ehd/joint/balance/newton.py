@@ -244,7 +244,8 @@ class Balance:
                     break
                 here, past, idle, damping = best, [], 0, 0.6 * damping
             step = self._step(here, resistance)
-            past = [*past, (self._unknowns(here), step)][-min(PATIENCE, step.size) - 1 :]
+            unknowns = np.append(here.motion[self.free], here.temperature) / self._scales(here.change.size)
+            past = [*past, (unknowns, step)][-min(PATIENCE, step.size) - 1 :]
             if not here.change.size or np.abs(here.change).max() >= ACCELERATED:
                 past = []
             accelerated = damping * step - (foreseen(past, damping) if len(past) > 1 else 0.0)
@@ -279,10 +280,6 @@ class Balance:
         """Units (k + size,) of the unknowns: clearance for positions, `LARGEST_CHANGE` of all temperatures, K."""
         c = self.model.bearing.radial_clearance
         return np.append(np.full(len(self.free), c), np.full(size, LARGEST_CHANGE * math.sqrt(max(size, 1))))
-
-    def _unknowns(self, place: Place) -> np.ndarray:
-        """Scaled unknowns (k + m,) at a place."""
-        return np.append(place.motion[self.free], place.temperature) / self._scales(place.change.size)
 
     def _step(self, place: Place, resistance: float) -> np.ndarray:
         """Newton's step from a place, damped, and the temperature's change, scaled (k + m,)."""

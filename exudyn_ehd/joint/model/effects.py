@@ -6,7 +6,7 @@ Also grid, solver and buffers of a bearing model: the parts that are kept from e
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import reduce
 from typing import Protocol
 
@@ -79,18 +79,6 @@ class Effects:
     wear: Wear | None = None
     liner: ElasticLiner | None = None
     lobes: LobeTerm | None = None
-
-    @property
-    def least_plain_gap(self) -> float | None:
-        """Scaled gap above which a film has no effect but a temperature that it shares as a whole; None without one.
-
-        Contacts and a wall do not act above it.
-        """
-        others = replace(self, thermal=None, limiter=None, contacts=())
-        if others != Effects() or not isinstance(self.thermal, LumpedTemperature | None):
-            return None
-        begins = [0.0] if self.limiter is None else [self.limiter.limits_below]
-        return max(begins + [contact.presses_below for contact in self.contacts])
 
 
 def _reservoirs(bearing: JournalBearing, supply: SupplyMap, effects: Effects) -> Reservoirs:

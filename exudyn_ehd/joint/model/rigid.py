@@ -36,7 +36,6 @@ from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.joint.model.effects import Effects, film_parts
 from exudyn_ehd.joint.model.loads import film_loads, recess_of
 from exudyn_ehd.joint.model.results import FilmFields, eccentricities, film_fields, quantities
-from exudyn_ehd.joint.plain_film import is_plain, solve_plain
 from exudyn_ehd.joint.solved_film import (
     BESIDE,
     MOTION_SIZE,
@@ -198,7 +197,6 @@ class BearingModel:
         # displacement of a flexible bore and its rate, scaled
         self._displacement: np.ndarray | None = None
         self._rate = p.solver.nothing
-        self._least_gap = self.effects.least_plain_gap if not self.flexible and is_plain(p) else None
         self._set_viscosity(1.0)
 
     def _set_viscosity(self, ratio: float) -> None:
@@ -304,11 +302,6 @@ class BearingModel:
         if p.supply is not None and p.supply.turn(spin):
             self.solver.refresh_fixed()
             self._prescribe()
-        if self._least_gap is not None:
-            motion, begin = np.array(motion, dtype=float), (history, step, temperature)
-            film, iterations = solve_plain(p, self.scales, motion, self._prescribed, self._least_gap, begin)
-            if film is not None:
-                return Evaluation(Status.CONVERGED, motion, film.loads.wrench, iterations, film.minimum_gap, film, self)
         journal = self._journal(motion, spin)
         # a sum is finite only if all its terms are
         if not math.isfinite(sum(journal.motion.tolist())):

@@ -23,8 +23,8 @@ from exudyn_ehd.film.solvers.liner import LinerFilm
 from exudyn_ehd.film.solvers.sor import ClassicSolver
 from exudyn_ehd.film.surfaces import roughness
 from exudyn_ehd.film.surfaces.contact import contact_tangent, contact_weights
-from exudyn_ehd.joint.plain_film import has_plain_tangent, plain_tangent
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
+from exudyn_ehd.joint.tangent.plain import has_plain_tangent, plain_tangent
 
 
 def wrench_tangent(film: SolvedFilm, slow_motion: bool = False) -> np.ndarray:

@@ -302,7 +302,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
 
 @every_closure
 def test_steps_compiled_as_a_whole_find_the_same_film(closure):
-    """`solve_plain` and balances by turns with `proceed`: 1e-11 of the peak, steady and with the liner's rate."""
+    """One kernel, and balances by turns with `proceed`: 1e-11 of the peak, steady and with the liner's rate."""
     if closure.conserves_mass:
         return
     for eps, rate, step in ((0.6, 10.0, 0.0), (0.95, -4.0, 1e-3)):

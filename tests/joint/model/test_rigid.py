@@ -196,6 +196,16 @@ def test_states_without_a_film(make_bearing, make_motion, state, status):
     np.testing.assert_allclose(model.evaluate(good).wrench, before, rtol=0, atol=1e-12 * np.abs(before).max())
 
 
+def test_a_state_without_a_film_leaves_the_warm_start(make_bearing, make_motion):
+    model = build_model(make_bearing(1.0, film=FILMS[0]))
+    motion = make_motion(model.bearing, eccentricity=(0.5, 0.6))
+    model.evaluate(motion)
+    steps = model.evaluate(motion).iterations
+    assert model.evaluate(2.0 * motion).status is ehd.Status.NO_FILM
+    assert model.solver.work.warm
+    assert model.evaluate(motion).iterations <= steps + 1
+
+
 def test_a_wall_carries_a_journal_beyond_the_bore(make_bearing, make_motion):
     bearing = make_bearing(1.0, contact=ehd.RegularisedWall(onset=2e-6, pressure=1e9))
     forces = []

@@ -5,8 +5,8 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.plain_film import has_plain_tangent
 from exudyn_ehd.joint.tangent import wrench
+from exudyn_ehd.joint.tangent.plain import has_plain_tangent
 
 GRID = ehd.FiniteLength(n_theta=48, n_z=6)
 GROOVE = ehd.AxialGroove(angle=1.0, width_angle=0.3, pressure=2e5)
