@@ -44,9 +44,9 @@ to 2.5 for 125 of 137 errors.
 
 Omitted are: the first two steps, in which the rates still jump from the given initial values to those of the films;
 pulses within a step without `StepControl`, which no accepted state shows; oscillations that the trapezoidal rule does
-not damp; constraints, in M; and errors of the films' memory: heat, of second order; cavities, wear and compressible
-volumes of restrictors, of first order. The line at the end of a run gives the error of the pressures behind
-restrictors. With `ElrodAdams` the estimate was 0.04 to 0.9 of the error, with `FilmEnergy` 0.02 to 0.9.
+not damp; constraints, in M; and errors of the films' memory: heat and cavities, nearly of second order; wear and
+compressible volumes of restrictors, of first order. The line at the end of a run gives the error of the pressures
+behind restrictors. With `ElrodAdams` the estimate was 0.04 to 0.9 of the error, with `FilmEnergy` 0.02 to 0.9.
 """
 
 from __future__ import annotations

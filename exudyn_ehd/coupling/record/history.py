@@ -445,8 +445,8 @@ def error_of_pockets(bearing: object, history: JointHistory) -> tuple[float, int
 def unseen_errors(bearing: object) -> str:
     """Parts of a film's memory, in words, whose errors by the time steps are not estimated; empty without them.
 
-    Errors by oil content are of first order in the step, errors by temperatures of second order. Both may exceed the
-    estimated ones by far: with 120 steps per period errors by temperatures by up to twenty times.
+    Errors by oil content and by temperatures fall nearly with the square of the step. Both may exceed the estimated
+    ones by far: with 120 steps per period errors by temperatures by up to twenty times.
     """
     closure, thermal = getattr(bearing, "cavitation", None), getattr(bearing, "thermal", None)
     found = {"oil content": getattr(closure, "conserves_mass", False), "temperatures": isinstance(thermal, FilmEnergy)}
