@@ -294,35 +294,52 @@ def _leaves(fx, fz, i, j):
 
 @njit(cache=True, inline="always")
 def _rise_along(fill, before, here, after, link_before, link_after, in_cells):
-    """Return the rise of the fill from a vertex to the middle of the link behind it, by van Leer's limiter.
+    """Return the rise of the fill from a vertex to the middle of the link behind it, by van Leer's limiter, and its
+    derivatives to the fills before and behind.
 
-    It is half a link times the harmonic mean of the slopes on both sides, and 0 at extrema. With a line inside the
-    cells it is 0 also behind a full vertex, so that the fill stays below that at which a vertex has a line. ``link``:
-    inverse lengths.
+    The rise is half a link times the harmonic mean of the slopes on both sides, and 0 at extrema. With a line inside
+    the cells it is 0 also behind a full vertex, so that the fill stays below that at which a vertex has a line.
+    ``link``: inverse lengths.
     """
     back, ahead = (fill[here] - fill[before]) * link_before, (fill[after] - fill[here]) * link_after
     if not back * ahead > 0.0 or (in_cells and fill[before] >= 1.0):
-        return 0.0
-    return back * ahead / ((back + ahead) * link_after)
+        return 0.0, 0.0, 0.0
+    share = ahead / (back + ahead)
+    return share * back / link_after, -share * share * link_before / link_after, (1.0 - share) ** 2
 
 
 @njit(cache=True, inline="always")
 def _rise(fx, fz, fill, links, in_cells, i, j):
-    """Return the rise of the fill from a vertex to the middles of the links downstream, weighted by their flows; within
-    the bounds of `lag_void`."""
+    """Return the rise of the fill from a vertex to the middles of the links downstream, weighted by their flows and
+    within the bounds of `lag_void`, and its derivatives to the next and the last fill in theta, then in z, and to the
+    own one."""
     (n, m), (link_x, link_z) = fill.shape, links
     on, up = (i + 1 if i + 1 < n else 0), (i - 1 if i > 0 else n - 1)
-    row, column, total = fill[:, j], fill[i], 0.0
-    if fx[i, j] > 0.0:
-        total += fx[i, j] * _rise_along(row, up, i, on, link_x[up], link_x[i], in_cells)
-    if fx[up, j] < 0.0:
-        total -= fx[up, j] * _rise_along(row, on, i, up, link_x[i], link_x[up], in_cells)
-    if 0 < j < m - 1 and fz[i, j] > 0.0:
-        total += fz[i, j] * _rise_along(column, j - 1, j, j + 1, link_z[j - 1], link_z[j], in_cells)
-    if 0 < j < m - 1 and fz[i, j - 1] < 0.0:
-        total -= fz[i, j - 1] * _rise_along(column, j + 1, j, j - 1, link_z[j], link_z[j - 1], in_cells)
-    leaves, own = _leaves(fx, fz, i, j), fill[i, j]
-    return min(max(total / leaves, -LARGEST_LAG * own), LARGEST_LAG * (1.0 - own)) if leaves > 0.0 else 0.0
+    row, column, out, leaves = fill[:, j], fill[i], np.zeros(6), _leaves(fx, fz, i, j)
+    for way in range(4):
+        rise, by_before, by_after, flow = 0.0, 0.0, 0.0, 0.0
+        if way == 0 and fx[i, j] > 0.0:
+            flow = fx[i, j]
+            rise, by_before, by_after = _rise_along(row, up, i, on, link_x[up], link_x[i], in_cells)
+        elif way == 1 and fx[up, j] < 0.0:
+            flow = -fx[up, j]
+            rise, by_before, by_after = _rise_along(row, on, i, up, link_x[i], link_x[up], in_cells)
+        elif way == 2 and 0 < j < m - 1 and fz[i, j] > 0.0:
+            flow = fz[i, j]
+            rise, by_before, by_after = _rise_along(column, j - 1, j, j + 1, link_z[j - 1], link_z[j], in_cells)
+        elif way == 3 and 0 < j < m - 1 and fz[i, j - 1] < 0.0:
+            flow = -fz[i, j - 1]
+            rise, by_before, by_after = _rise_along(column, j + 1, j, j - 1, link_z[j], link_z[j - 1], in_cells)
+        if flow > 0.0:
+            first = way // 2 * 2
+            out[0] += flow / leaves * rise
+            out[1 + first + way % 2] += flow / leaves * by_after
+            out[2 + first - way % 2] += flow / leaves * by_before
+    out[5], own = -out[1:5].sum(), fill[i, j]
+    if not -LARGEST_LAG * own <= out[0] <= LARGEST_LAG * (1.0 - own):
+        out[0] = min(max(out[0], -LARGEST_LAG * own), LARGEST_LAG * (1.0 - own))
+        out[1:5], out[5] = 0.0, -LARGEST_LAG
+    return out
 
 
 @njit(cache=True)
@@ -341,7 +358,7 @@ def outflow_of(fx, fz, H, H_t, area, links, in_cells, fill):
             out[0, i, j] = fill[i, j]
             out[1, i, j] = H_t[i, j] / H[i, j]
             out[2, i, j] = _leaves(fx, fz, i, j) / volume if volume > 0.0 else 0.0
-            out[3, i, j] = _rise(fx, fz, fill, links, in_cells, i, j)
+            out[3, i, j] = _rise(fx, fz, fill, links, in_cells, i, j)[0]
     return out
 
 
@@ -361,10 +378,22 @@ def move_upstream(fx, fz, links, in_cells, out):
         change = 0.0
         for i in range(n):
             for j in range(m):
-                new = _rise(fx, fz, fill, links, in_cells, i, j)
+                new = _rise(fx, fz, fill, links, in_cells, i, j)[0]
                 if flows[i, j] < 1.0:
                     change = max(change, abs(new - rise[i, j]))
                     rise[i, j] = new
+
+
+@njit(cache=True)
+def rise_slopes(fx, fz, fill, links, in_cells):
+    """Return the derivatives (5, n, m) of the rises to the next and the last fill in theta, then in z, and to the own
+    one."""
+    n, m = fill.shape
+    out = np.zeros((5, n, m))
+    for i in range(n):
+        for j in range(m):
+            out[:, i, j] = _rise(fx, fz, fill, links, in_cells, i, j)[1:]
+    return out
 
 
 @njit(cache=True)

@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
+from scipy.sparse import csc_matrix, identity
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.closures import Closure, FilmSystem
@@ -44,6 +45,7 @@ from exudyn_ehd.film.reynolds.links import (
     link_metric,
     move_upstream,
     outflow_of,
+    rise_slopes,
     set_links,
 )
 from exudyn_ehd.film.supply.restrictors import seal_ends
@@ -346,15 +348,40 @@ class FilmArrays:
         step; fields of `exudyn_ehd.film.reynolds.links`. There a vertex at a line inside the cells counts as full,
         since the flows out of it follow its pressure, not its fill.
         """
-        s, line, content = self.system, self.oil_line, self.content
-        links = self.grid.link_x, self.grid.link_z
+        s, (flows, outflow), content = self.system, self._outflow(), self.content
+        if s.inverse_step == 0.0:
+            content = content + self.rho * (outflow[0] - flows) * self.H
+        known = mass is not None and step > 0.0
+        return self.H - content, mass + content - s.mass_old if known else content, outflow
+
+    def _outflow(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the fills (n, m) of the last solution, and the fields (4, n, m) for the next step."""
+        s, line, links = self.system, self.oil_line, (self.grid.link_x, self.grid.link_z)
         fill = s.fill if line is None else np.where(line.s < 1.0, 1.0, s.fill)
         outflow = outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, links, line is not None, fill)
         if s.inverse_step == 0.0:
             move_upstream(s.fx, s.fz, links, line is not None, outflow)
-            content = content + self.rho * (outflow[0] - fill) * self.H
-        known = mass is not None and step > 0.0
-        return self.H - content, mass + content - s.mass_old if known else content, outflow
+        return fill, outflow
+
+    def flows_by_fills(self) -> csc_matrix:
+        """Derivative (n m, n m) of the fills of the flows to the fills of the vertices, of a steady film."""
+        s, (n, m), where = self.system, self.grid.shape, np.arange(self.grid.area.size)
+        fill, outflow = self._outflow()
+        links = self.grid.link_x, self.grid.link_z
+        slopes = rise_slopes(s.fx, s.fz, outflow[0], links, self.oil_line is not None) * (fill < 1.0)
+        i, j = np.divmod(where, m)
+        on = [
+            (i + 1) % n * m + j,
+            (i - 1) % n * m + j,
+            i * m + np.minimum(j + 1, m - 1),
+            i * m + np.maximum(j - 1, 0),
+            where,
+        ]
+        rows, columns = np.tile(where, 5), np.concatenate(on)
+        moving = (fill < 1.0).ravel()[columns]
+        return csc_matrix((slopes.ravel() * moving, (rows, columns)), shape=(n * m, n * m)) + identity(
+            n * m, format="csc"
+        )
 
     def flooded(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the result of `memory` for a full film at the present gaps, without flows so far."""

@@ -244,7 +244,9 @@ class BearingModel:
         void, mass, outflow = s.flooded() if remembers else (None, None, None)
         new = History() if effects.thermal is None else effects.thermal.first_memory()
         wear = None if effects.wear is None else effects.wear.field(None).copy()
-        new = replace(new, void=void, mass=mass, outflow=outflow, wear=wear, pockets=s.pockets if found else None)
+        growth = s.nothing if remembers and effects.gap_terms else None
+        pockets = s.pockets if found else None
+        new = replace(new, void=void, mass=mass, outflow=outflow, wear=wear, pockets=pockets, growth=growth)
         if found and self.remembers_deflection and liner is not None:
             new = replace(new, deflection=liner.deflection)
             for _ in range(2 if s.oil_line else 0):
@@ -268,9 +270,10 @@ class BearingModel:
             deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
             pockets=s.pockets,
         )
-        if effects.gap_terms and void is not None and film.history is not None and film.step > 0.0:
+        if effects.gap_terms and void is not None:
             changes = [term.field(new) - term.field(old) for term in effects.gap_terms]
-            new = replace(new, growth=np.sum(changes, axis=0) / film.step)
+            still = film.history is None or film.step <= 0.0
+            new = replace(new, growth=s.nothing if still else np.sum(changes, axis=0) / film.step)
         return new
 
     def evaluate(
