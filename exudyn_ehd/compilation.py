@@ -53,7 +53,7 @@ class Compilations(event.Listener):
 
     def on_start(self, event: event.Event) -> None:
         """Begin a compilation, maybe within another one."""
-        if self._running or _is_own(event):
+        if self._running or event.data["dispatcher"].py_func.__module__.startswith("exudyn_ehd."):
             if self._running == 0:
                 self._collects = gc.isenabled()
                 gc.disable()
@@ -70,10 +70,6 @@ class Compilations(event.Listener):
             self._running -= 1
             if self._running == 0 and self._collects:
                 gc.enable()
-
-
-def _is_own(event: event.Event) -> bool:
-    return bool(event.data["dispatcher"].py_func.__module__.startswith("exudyn_ehd."))
 
 
 COMPILATIONS = Compilations()

@@ -260,3 +260,44 @@ def wrench_gradient(changes, pose, integrals, couette, pose_scale, scales, speed
         out[r, 9] *= 0.5 / R
     out[2, 9] -= shear * couette
     out[5, 8] -= shear * R * R * couette
+
+
+@njit(cache=True)
+def end_films(links, b, active, fixed, cuts, widths, length_z, balance_out):
+    """Correct the balances of supply areas: the film from an area into a cavity ends where its parabola of pressure
+    does.
+
+    B is the flow per length that wedge and squeeze take away. The scheme takes ``B (d - l / 2)`` from the area for the
+    film from its edge to the middle of the link, where the control volumes meet. l is the length of the link, d the
+    distance from the edge to the first vertex of the cavity. A film that begins at the cavity pressure ends at once and
+    takes nothing. If the vertex receives the pressure flow q, the total flow from the area (for d = l) is
+    ``sqrt(2 q B l)`` in place of ``q + B l / 2``. This holds up to the q at which the film reaches the vertex.
+
+    Parameters
+    ----------
+    links : conductances (n, m) in theta and z
+    b, active, fixed : (n, m), right-hand side of the balances, vertices of the film and prescribed ones
+    cuts : (2, n, m), factors of the links in theta and z, see `exudyn_ehd.film.grid.FilmGrid`
+    widths : control volumes' widths (n,) and (m,)
+    length_z : (m - 1,), lengths of the links in z
+    balance_out : (n, m)
+        Balances, changed in place at prescribed vertices: the flows that these feed into the film.
+    """
+    n, m = b.shape
+    for axis in range(2):
+        for i in range(n):
+            for j in range(1, m - 1):
+                if not fixed[i, j]:
+                    continue
+                for way in (-1, 1):
+                    u, v = ((i + way) % n, j) if axis == 0 else (i, j + way)
+                    at = (i, j) if way > 0 else (u, v)
+                    if fixed[u, v] or active[u, v] or b[u, v] >= 0.0 or links[axis][at] <= 0.0:
+                        continue
+                    received = max(0.0, 2.0 * (1.0 + balance_out[u, v] / b[u, v]))
+                    width = widths[0][u] if axis == 0 else widths[1][v]
+                    # the columns on the edges of arcs have half a width
+                    length = max(widths[0][i], widths[0][u]) if axis == 0 else length_z[at[1]]
+                    d = length * min(1.0, 1.0 / cuts[axis][at])
+                    if received < 1.0:
+                        balance_out[i, j] += b[u, v] / width * (d - 0.5 * length) * (1.0 - np.sqrt(received)) ** 2

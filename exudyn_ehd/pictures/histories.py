@@ -116,7 +116,9 @@ def plot_load(
         (line,) = ax.plot(angle, unit(size), color=BLUE if own else None, label=text or "load on the bush")
         ax.set_rlim(bottom=0.0)
         ax.yaxis.set_major_locator(MaxNLocator(4))
-        ax.set_rlabel_position(_freest(angle))
+        # between two labelled rays, where the fewest of the angles lie
+        count, _ = np.histogram(np.mod(angle, 2.0 * np.pi), bins=8, range=(0.0, 2.0 * np.pi))
+        ax.set_rlabel_position(22.5 + 45.0 * int(np.argmin(count)))
         ax.set_title(headed(title, f"load of the journal on the bush [{unit.symbol}]"))
         style_ticks(ax, grid=True)
         _mark_ends(ax, np.stack([angle, unit(size)], axis=1), line.get_color(), None if own else text)
@@ -136,12 +138,6 @@ def _mark_ends(ax: Axes, points: np.ndarray, colour: str, text: str | None) -> N
         ax.figure.legend(loc="outside lower center", ncols=3)
     elif text:
         ax.legend()
-
-
-def _freest(angle: np.ndarray) -> float:
-    """Angle between two labelled rays, in degrees, where the fewest of the angles (rad) lie: for the radial labels."""
-    count, _ = np.histogram(np.mod(angle, 2.0 * np.pi), bins=8, range=(0.0, 2.0 * np.pi))
-    return 22.5 + 45.0 * int(np.argmin(count))
 
 
 def plot_traces(

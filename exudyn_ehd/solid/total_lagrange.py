@@ -236,10 +236,6 @@ class TotalLagrange:
         return N, np.ascontiguousarray(N.T), blocks.blocks_of(inverse, weight)
 
     @cached_property
-    def _size(self) -> tuple[int, ...]:
-        return (0,) * self.mesh.element.size
-
-    @cached_property
     def _pattern(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Fixed sparsity pattern of the tangent, of 3 x 3 node blocks, and the place of every element's blocks in it.
 
@@ -277,7 +273,7 @@ class TotalLagrange:
         u, v, law = self._state(u, v)
         data = np.empty(len(indices))
         factors = (position_factor, position_factor + self.viscosity_time * velocity_factor)
-        state = (self._size, u, v, law, *factors, stride, slot, data)
+        state = ((0,) * self.mesh.element.size, u, v, law, *factors, stride, slot, data)
         kernel = kernels.tangent_parallel if self.parallel else kernels.tangent_serial
         kernel(G, w, elements, *state)
         return csr_matrix((data, indices, indptr), shape=(u.size, u.size), copy=False)

@@ -80,7 +80,9 @@ class FilmDisplay:
         self.gap = film.solver.H * clearance
         if film.bore is None:
             return
-        self.bore = model.bore.without_journal(film.bore.coordinates)
+        # the displacement of the bore itself, without an elastic journal's part
+        own = np.arange(model.bore.size) < model.bore.own
+        self.bore = model.bore.displacement(np.where(own, film.bore.coordinates, 0.0))
         self.largest = max(self.largest, float(np.abs(film.bore.displacement).max()) * clearance)
         modes: Any = getattr(model.bore, "modes", None)
         # finite-element bodies are drawn by Exudyn

@@ -381,12 +381,6 @@ class FilmSystem:
         self.linear_pressure, self.continued = line.solved, line.continued
         self.flow_pressure = line.solved
 
-    def take_density(self, density: DensityField) -> None:
-        """Use a density that follows the pressure in all later solutions."""
-        self.density = density
-        if self.kind != OIL:
-            self.fill, self.mass_old = np.ones((2, *self.H.shape))
-
     @property
     def curve(self) -> np.ndarray:
         """`CurveFields` of the vertices (9, n m), for films that Newton's method solves."""

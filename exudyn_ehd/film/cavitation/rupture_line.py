@@ -97,12 +97,25 @@ class RuptureLine:
         t of the module.
     lift_by_speed : (m,) array
         Conductance that a liner's deflection adds to k, over vx.
+    liner : (float, (n, m) array)
+        Compliance, and gaps on the links at the cavity pressure.
     """
 
     def __init__(self, block: np.ndarray, shape: tuple[int, int]) -> None:
         self.block, self.whole = block, block[4]
         self.f, self.k, self.s = (block[row].reshape(shape) for row in (0, 1, 6))
         self.density, self.gap_ratio, self.lift_by_speed = 1.0, np.zeros(shape), np.zeros(shape[1])
+        self.liner = 0.0, self.gap_ratio
+
+    def take(self, film: FilmTerms, b: np.ndarray, density: float, vx: float) -> None:
+        """Set f, k and t from the terms and the right-hand side b (n, m) of a film at the cavity pressure.
+
+        For films on a liner, or whose conductances or density follow the pressure; others set f and k in their solver.
+        """
+        (beta, gaps), self.density, self.s[:] = self.liner, density, 1.0
+        line_terms(film.kx, density * b, film.fixed, True, self.block)
+        if beta > 0.0:
+            limit_by_liner(self.block, gaps, beta, self.lift_by_speed * vx, self.gap_ratio)
 
     def gradients(
         self,
@@ -251,27 +264,6 @@ class AtLine(NamedTuple):
     gaps: tuple[np.ndarray, np.ndarray]
     flux: LinkFlux | None
     chain: GapChain | None
-
-
-class FilmLine(RuptureLine):
-    """Rupture line of a film on a liner, or of one whose conductances or density follow the pressure.
-
-    Attributes
-    ----------
-    liner : (float, (n, m) array)
-        Compliance, and gaps on the links at the cavity pressure.
-    """
-
-    def __init__(self, block: np.ndarray, shape: tuple[int, int]) -> None:
-        super().__init__(block, shape)
-        self.liner = 0.0, self.gap_ratio
-
-    def take(self, film: FilmTerms, b: np.ndarray, density: float, vx: float) -> None:
-        """Set f, k and t from the terms and the right-hand side b (n, m) of a film at the cavity pressure."""
-        (beta, gaps), self.density, self.s[:] = self.liner, density, 1.0
-        line_terms(film.kx, density * b, film.fixed, True, self.block)
-        if beta > 0.0:
-            limit_by_liner(self.block, gaps, beta, self.lift_by_speed * vx, self.gap_ratio)
 
 
 def undeformed(line: Gradients, chain: GapChain | None) -> Gradients:

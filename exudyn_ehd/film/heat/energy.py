@@ -48,7 +48,8 @@ import math
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drop_weights, drops, following, to_ends
+from exudyn_ehd.film.reynolds.gap import drop_weights, drops, following, to_ends
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 
 # Heights of Lobatto's four points, over the gap.
 LOBATTO = np.array([0.0, 0.5 - 0.5 / math.sqrt(5.0), 0.5 + 0.5 / math.sqrt(5.0), 1.0])

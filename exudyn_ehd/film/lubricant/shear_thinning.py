@@ -39,7 +39,8 @@ from exudyn_ehd.film.lubricant.shear_profile import (
     thin_links,
     thin_shear,
 )
-from exudyn_ehd.film.reynolds.links import LinkFlux, LinkLaw, drops, on_links
+from exudyn_ehd.film.reynolds.gap import drops, on_links
+from exudyn_ehd.film.reynolds.links import LinkFlux, LinkLaw
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError
 
 THINS = "the law is that of an oil that thins."

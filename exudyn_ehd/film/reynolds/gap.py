@@ -31,6 +31,11 @@ and similarly with the speeds of the surfaces. With an elastic liner the flow ov
 its ends. A rupture line inside the cells adds entries of the same form. The gap is a sum of shapes,
 ``H = 1 + sum q_k S_k``, whose coefficients q are the journal's pose or a bore's coordinates. Derivatives to q are those
 to the gap times S, at vertices and on links. The gradient of a functional with the adjoint lam is ``-lam . dr``.
+
+Differences and sums over the links
+-----------------------------------
+Links lead from a vertex to the next one in theta, around the ring, and to the next one in z. Values on links are
+(2, ..., n, m), those in theta first; behind the last row there is no link in z, and its value has to be zero.
 """
 
 from __future__ import annotations
@@ -347,3 +352,42 @@ def functional_gradients(lam, columns, out):
             for r in range(own.size):
                 total -= own[r] * column[r]
             out[k, q] = total
+
+
+def following(P: np.ndarray) -> np.ndarray:
+    """Return the values (2, n, m) of a field at the next vertex in theta and z; the last row in z keeps its own."""
+    out = np.array((P, P))
+    out[0, :-1], out[0, -1] = P[1:], P[0]
+    out[1, :, :-1] = P[:, 1:]
+    return out
+
+
+def on_links(P: np.ndarray) -> np.ndarray:
+    """Return the mean of a field at both ends of the links (2, n, m)."""
+    return 0.5 * (P + following(P))
+
+
+def drops(P: np.ndarray) -> np.ndarray:
+    """Return the differences on the links (2, n, m): field P (n, m) less its value at the next vertex."""
+    return P - following(P)
+
+
+def drop_weights(links: np.ndarray) -> np.ndarray:
+    """Transpose of `drops`: weights of P (2, ..., n, m) in the sums of ``links`` times `drops`, in theta and in z.
+
+    For flows on the links, the sum over both directions is the outflow of the vertices.
+    """
+    out, (x, z) = links.copy(), links
+    out[0, ..., 1:, :] -= x[..., :-1, :]
+    out[0, ..., 0, :] -= x[..., -1, :]
+    out[1, ..., 1:] -= z[..., :-1]
+    return out
+
+
+def to_ends(values: np.ndarray, axis: int) -> np.ndarray:
+    """Transpose of the mean of both ends: half of the value of every link along an axis, added at each of its ends."""
+    out = values.copy()
+    ends, links = out.swapaxes(0, axis), values.swapaxes(0, axis)
+    ends[1:] += links[:-1]
+    ends[0] += links[-1]
+    return 0.5 * out

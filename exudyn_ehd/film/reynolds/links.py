@@ -42,11 +42,6 @@ van Leer (J. Computational Physics 14 (1974) 361). It is that at the start of th
 linear. Between -0.45 late and 0.45 (1 - late) it leaves the fill of the flow between 0 and 1. The equations of a steady
 film contain only the fills of its flows. Those of the vertices follow from them (`move_upstream`), so that a run which
 begins with a steady film stays there. The shear in a cavity has the fills of the flows in both cases.
-
-Differences and sums over the links
------------------------------------
-Links lead from a vertex to the next one in theta, around the ring, and to the next one in z. Values on links are
-(2, ..., n, m), those in theta first; behind the last row there is no link in z, and its value has to be zero.
 """
 
 from __future__ import annotations
@@ -119,10 +114,6 @@ class LinkFlux(NamedTuple):
         if self.carriers:
             self.cx[:], self.cz[:] = self.gap_x, self.gap_z
             self.cx_h[:] = self.cz_h[:] = 1.0
-        self.reset_speeds()
-
-    def reset_speeds(self) -> None:
-        """Reset the derivatives to the speed to 0, if effects change them."""
         if self.speeds:
             self.gx_v[:] = self.gz_v[:] = 0.0
 
@@ -293,19 +284,24 @@ def _leaves(fx, fz, i, j):
 
 
 @njit(cache=True, inline="always")
-def _rise_along(fill, before, here, after, link_before, link_after, in_cells):
-    """Return the rise of the fill from a vertex to the middle of the link behind it, by van Leer's limiter, and its
-    derivatives to the fills before and behind.
+def _add_rise(fill, last, own, on, flows, links, in_cells, out, first):
+    """Add the rise of the fill to the middle of the link downstream along one axis, by van Leer's limiter.
 
-    The rise is half a link times the harmonic mean of the slopes on both sides, and 0 at extrema. With a line inside
-    the cells it is 0 also behind a full vertex, so that the fill stays below that at which a vertex has a line.
-    ``link``: inverse lengths.
+    It is half a link times the harmonic mean of the slopes on both sides, and 0 at extrema, or where flows over both
+    links differ in sign. With a line inside the cells it is 0 also behind a full vertex, so that the fill stays below
+    that at which a vertex has a line. ``last``, ``own``, ``on``: places in ``fill``; ``flows``, ``links``: shares of
+    the outflow and inverse lengths of both links; ``first``: first derivative of the axis in ``out``, see `_rise`.
     """
-    back, ahead = (fill[here] - fill[before]) * link_before, (fill[after] - fill[here]) * link_after
-    if not back * ahead > 0.0 or (in_cells and fill[before] >= 1.0):
-        return 0.0, 0.0, 0.0
-    share = ahead / (back + ahead)
-    return share * back / link_after, -share * share * link_before / link_after, (1.0 - share) ** 2
+    forward = flows[1] > 0.0
+    before, after = (last, on) if forward else (on, last)
+    to, away = (links[0], links[1]) if forward else (links[1], links[0])
+    back, ahead = (fill[own] - fill[before]) * to, (fill[after] - fill[own]) * away
+    if not (flows[0] * flows[1] > 0.0 and back * ahead > 0.0) or (in_cells and fill[before] >= 1.0):
+        return
+    share, flow = ahead / (back + ahead), abs(flows[1] if forward else flows[0])
+    out[0] += flow * share * back / away
+    out[first + forward] -= flow * share * share * to / away
+    out[first + 1 - forward] += flow * (1.0 - share) ** 2
 
 
 @njit(cache=True, inline="always")
@@ -313,32 +309,17 @@ def _rise(fx, fz, fill, links, in_cells, i, j):
     """Return the rise of the fill from a vertex to the middles of the links downstream, weighted by their flows and
     within the bounds of `lag_void`, and its derivatives to the next and the last fill in theta, then in z, and to the
     own one."""
-    (n, m), (link_x, link_z) = fill.shape, links
-    on, up = (i + 1 if i + 1 < n else 0), (i - 1 if i > 0 else n - 1)
-    row, column, out, leaves = fill[:, j], fill[i], np.zeros(6), _leaves(fx, fz, i, j)
-    for way in range(4):
-        rise, by_before, by_after, flow = 0.0, 0.0, 0.0, 0.0
-        if way == 0 and fx[i, j] > 0.0:
-            flow = fx[i, j]
-            rise, by_before, by_after = _rise_along(row, up, i, on, link_x[up], link_x[i], in_cells)
-        elif way == 1 and fx[up, j] < 0.0:
-            flow = -fx[up, j]
-            rise, by_before, by_after = _rise_along(row, on, i, up, link_x[i], link_x[up], in_cells)
-        elif way == 2 and 0 < j < m - 1 and fz[i, j] > 0.0:
-            flow = fz[i, j]
-            rise, by_before, by_after = _rise_along(column, j - 1, j, j + 1, link_z[j - 1], link_z[j], in_cells)
-        elif way == 3 and 0 < j < m - 1 and fz[i, j - 1] < 0.0:
-            flow = -fz[i, j - 1]
-            rise, by_before, by_after = _rise_along(column, j + 1, j, j - 1, link_z[j], link_z[j - 1], in_cells)
-        if flow > 0.0:
-            first = way // 2 * 2
-            out[0] += flow / leaves * rise
-            out[1 + first + way % 2] += flow / leaves * by_after
-            out[2 + first - way % 2] += flow / leaves * by_before
-    out[5], own = -out[1:5].sum(), fill[i, j]
+    (n, m), (x, z), own, out = fill.shape, links, fill[i, j], np.zeros(6)
+    leaves = _leaves(fx, fz, i, j)
+    if leaves > 0.0:
+        up, on = (i - 1 if i > 0 else n - 1), (i + 1 if i + 1 < n else 0)
+        _add_rise(fill[:, j], up, i, on, (fx[up, j] / leaves, fx[i, j] / leaves), (x[up], x[i]), in_cells, out, 1)
+        if 0 < j < m - 1:
+            flows = fz[i, j - 1] / leaves, fz[i, j] / leaves
+            _add_rise(fill[i], j - 1, j, j + 1, flows, (z[j - 1], z[j]), in_cells, out, 3)
+    out[5] = -out[1:5].sum()
     if not -LARGEST_LAG * own <= out[0] <= LARGEST_LAG * (1.0 - own):
-        out[0] = min(max(out[0], -LARGEST_LAG * own), LARGEST_LAG * (1.0 - own))
-        out[1:5], out[5] = 0.0, -LARGEST_LAG
+        out[0], out[1:5], out[5] = min(max(out[0], -LARGEST_LAG * own), LARGEST_LAG * (1.0 - own)), 0.0, -LARGEST_LAG
     return out
 
 
@@ -423,42 +404,3 @@ def lag_void(outflow, step, fixed, prompt_out, late_out, rise_out):
             w = min(LARGEST_LAG, late / fill, fill / late * min(1.0, LARGEST_LAG / max(drains, LARGEST_LAG)))
             rise_out[i, j] = min(max(outflow[3, i, j], -LARGEST_LAG * late), LARGEST_LAG * (1.0 - late))
             prompt_out[i, j], late_out[i, j] = 1.0 - w, w * late + rise_out[i, j]
-
-
-def following(P: np.ndarray) -> np.ndarray:
-    """Return the values (2, n, m) of a field at the next vertex in theta and z; the last row in z keeps its own."""
-    out = np.array((P, P))
-    out[0, :-1], out[0, -1] = P[1:], P[0]
-    out[1, :, :-1] = P[:, 1:]
-    return out
-
-
-def on_links(P: np.ndarray) -> np.ndarray:
-    """Return the mean of a field at both ends of the links (2, n, m)."""
-    return 0.5 * (P + following(P))
-
-
-def drops(P: np.ndarray) -> np.ndarray:
-    """Return the differences on the links (2, n, m): field P (n, m) less its value at the next vertex."""
-    return P - following(P)
-
-
-def drop_weights(links: np.ndarray) -> np.ndarray:
-    """Transpose of `drops`: weights of P (2, ..., n, m) in the sums of ``links`` times `drops`, in theta and in z.
-
-    For flows on the links, the sum over both directions is the outflow of the vertices.
-    """
-    out, (x, z) = links.copy(), links
-    out[0, ..., 1:, :] -= x[..., :-1, :]
-    out[0, ..., 0, :] -= x[..., -1, :]
-    out[1, ..., 1:] -= z[..., :-1]
-    return out
-
-
-def to_ends(values: np.ndarray, axis: int) -> np.ndarray:
-    """Transpose of the mean of both ends: half of the value of every link along an axis, added at each of its ends."""
-    out = values.copy()
-    ends, links = out.swapaxes(0, axis), values.swapaxes(0, axis)
-    ends[1:] += links[:-1]
-    ends[0] += links[-1]
-    return 0.5 * out

@@ -11,7 +11,6 @@ from scipy.sparse import block_array, csc_matrix, diags_array
 from exudyn_ehd.film.banded.substitution import solve_columns, solve_ldl, solve_lu, solve_lu_transposed
 from exudyn_ehd.film.banded.workspace import dense_band
 from exudyn_ehd.film.cavitation.rupture_line import AtLine, undeformed
-from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, linear_residual, link_derivatives
@@ -73,7 +72,11 @@ class FilmAnswers(FilmArrays):
         if law is not None:
             P, ratio, ratio_q = np.empty((3, *shape))
             beyond = not law.inverse(self.pressure * scale, P, ratio, ratio_q)
-            P_q = ratio if self.law is None else ratio / self._density_at(P, self.law)
+            # with a line inside the cells, clipped pressures differ from those at which rho was computed
+            dense, rho = self.law, self.rho
+            if dense is not None and self.closure.clips:
+                rho = dense.density.ratio(np.minimum(P, dense.largest_pressure))
+            P_q = ratio if dense is None else ratio / rho
             P /= scale
             ratio_q *= scale
             if self.law is not None and self.law.viscosity is None and shear is None:
@@ -93,11 +96,6 @@ class FilmAnswers(FilmArrays):
                 by *= ratio
         ratio_q *= factor
         return OilFields(P, P_q, factor * ratio, ratio_q, ratio_h, ratio_v, beyond, slopes)
-
-    def _density_at(self, p: np.ndarray, law: CompressibleLaw) -> np.ndarray:
-        """Density ratio (n, m) at the pressures p, Pa, of the last solution."""
-        # with a line inside the cells, clipped pressures differ from those at which rho was computed
-        return law.density.ratio(np.minimum(p, law.largest_pressure)) if self.closure.clips else self.rho
 
     def factor_solution(self) -> None:
         """Refactor the matrix at the last solution, unless its factor is exact already."""

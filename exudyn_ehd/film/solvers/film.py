@@ -31,9 +31,10 @@ from scipy.sparse import csc_matrix, identity
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.closures import Closure, FilmSystem
 from exudyn_ehd.film.cavitation.oil_line import OilLine
-from exudyn_ehd.film.cavitation.rupture_line import FilmLine, RuptureLine
+from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
 from exudyn_ehd.film.cavitation.states import CLIPPED, FULL, OIL, RUPTURE
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.loads import end_films
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityField
 from exudyn_ehd.film.lubricant.pressure_viscosity import law_at
 from exudyn_ehd.film.reynolds.balance import right_hand_side, upstream
@@ -141,51 +142,10 @@ def shear_by_unknown(weight, H, ratio, by_pressure, fill, rise, active, fixed, P
 
 
 def end_films_of_areas(s: FilmSystem, active: np.ndarray, grid: FilmGrid, balance_out: np.ndarray) -> None:
-    """Correct the balances (n, m) of supply areas for films that end within the link to a cavity, see `_end_films`."""
+    """Correct the balances (n, m) of supply areas for films that end within the link to a cavity."""
     cuts = np.ones((2, *grid.shape)) if grid.cuts is None else grid.cuts
     widths = grid.width_x, grid.width_z
-    _end_films((s.kx, s.kz), s.b, active, grid.fixed, cuts, widths, np.diff(grid.z), balance_out)
-
-
-@njit(cache=True)
-def _end_films(links, b, active, fixed, cuts, widths, length_z, balance_out):
-    """Correct the balances of supply areas: the film from an area into a cavity ends where its parabola of pressure
-    does.
-
-    B is the flow per length that wedge and squeeze take away. The scheme takes ``B (d - l / 2)`` from the area for the
-    film from its edge to the middle of the link, where the control volumes meet. l is the length of the link, d the
-    distance from the edge to the first vertex of the cavity. A film that begins at the cavity pressure ends at once and
-    takes nothing. If the vertex receives the pressure flow q, the total flow from the area (for d = l) is
-    ``sqrt(2 q B l)`` in place of ``q + B l / 2``. This holds up to the q at which the film reaches the vertex.
-
-    Parameters
-    ----------
-    links : conductances (n, m) in theta and z
-    b, active, fixed : (n, m), right-hand side of the balances, vertices of the film and prescribed ones
-    cuts : (2, n, m), factors of the links in theta and z, see `exudyn_ehd.film.grid.FilmGrid`
-    widths : control volumes' widths (n,) and (m,)
-    length_z : (m - 1,), lengths of the links in z
-    balance_out : (n, m)
-        Balances, changed in place at prescribed vertices: the flows that these feed into the film.
-    """
-    n, m = b.shape
-    for axis in range(2):
-        for i in range(n):
-            for j in range(1, m - 1):
-                if not fixed[i, j]:
-                    continue
-                for way in (-1, 1):
-                    u, v = ((i + way) % n, j) if axis == 0 else (i, j + way)
-                    at = (i, j) if way > 0 else (u, v)
-                    if fixed[u, v] or active[u, v] or b[u, v] >= 0.0 or links[axis][at] <= 0.0:
-                        continue
-                    received = max(0.0, 2.0 * (1.0 + balance_out[u, v] / b[u, v]))
-                    width = widths[0][u] if axis == 0 else widths[1][v]
-                    # the columns on the edges of arcs have half a width
-                    length = max(widths[0][i], widths[0][u]) if axis == 0 else length_z[at[1]]
-                    d = length * min(1.0, 1.0 / cuts[axis][at])
-                    if received < 1.0:
-                        balance_out[i, j] += b[u, v] / width * (d - 0.5 * length) * (1.0 - np.sqrt(received)) ** 2
+    end_films((s.kx, s.kz), s.b, active, grid.fixed, cuts, widths, np.diff(grid.z), balance_out)
 
 
 # Time step for the rates at an instant, over the time in which the film changes. Larger values change the rates,
@@ -240,7 +200,7 @@ class FilmArrays:
         elif closure.line_in_cells and (closure.clips or flow_x == 0.0):
             s.count_in_cells(grid, closure.clips)
         elif closure.line_in_cells:
-            self.line = s.rupture if self.symmetric else FilmLine(s.rupture.block, shape)
+            self.line = s.rupture
             s.line = None if has_feedback else self.line
         # density law; ratio rho of the last solution (n, m), and its derivative to the unknown pressures at the last
         # factor; None, ones and None without a law
@@ -249,7 +209,9 @@ class FilmArrays:
         self.rho_P: np.ndarray | None = None
         if self.density is not None:
             self.rho, self.rho_P = self.density.rho, self.density.rho_P
-            s.take_density(self.density)
+            s.density = self.density
+            if s.kind != OIL:
+                s.fill, s.mass_old = np.ones((2, *shape))
         # Pa per unit of the scaled pressure
         self.pressure_scale = 1.0
         # derivative of the last result of `keep` to the gap
@@ -351,8 +313,7 @@ class FilmArrays:
         s, (flows, outflow), content = self.system, self._outflow(), self.content
         if s.inverse_step == 0.0:
             content = content + self.rho * (outflow[0] - flows) * self.H
-        known = mass is not None and step > 0.0
-        return self.H - content, mass + content - s.mass_old if known else content, outflow
+        return self.H - content, content if mass is None or step <= 0.0 else mass + content - s.mass_old, outflow
 
     def _outflow(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the fills (n, m) of the last solution, and the fields (4, n, m) for the next step."""
@@ -400,9 +361,9 @@ class FilmArrays:
 
     def hold_back(self) -> None:
         """Do not average flows that would carry away more than the start-of-step content, for the present links."""
-        s = self.system
         if self.lagging:
-            hold_back(s.fields, s.inverse_step * s.mass_old, s.late, s.rise)
+            content = self.system.inverse_step * self.system.mass_old
+            hold_back(self.system.fields, content, self.system.late, self.system.rise)
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette flows of the links in theta and z, and rate of a full film's content per area, all (n, m); mass flows

@@ -57,7 +57,7 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import has_unfed_row
 from exudyn_ehd.film.cavitation.linear_film import clip_pressure, mean_in_cells
-from exudyn_ehd.film.cavitation.rupture_line import AtLine, FilmLine, GapChain
+from exudyn_ehd.film.cavitation.rupture_line import AtLine, GapChain, RuptureLine
 from exudyn_ehd.film.cavitation.states import OIL, RUPTURE
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
@@ -175,10 +175,10 @@ class LinerFilm(WinklerElements):
             f.H_t[:] = 0.0
         f.set_right_hand_side()
         s.kx[shut] = 0.0
-        line = f.line if isinstance(f.line, FilmLine) else f.oil_line
+        line = f.line or f.oil_line
         assert line is not None
         line.lift_by_speed = 0.5 * self.beta * np.sign(f.vx) * g.width_z
-        if isinstance(line, FilmLine):
+        if isinstance(line, RuptureLine):
             line.liner = self.beta, gaps[1]
         line.take(s.terms, s.b, density, f.vx)
         if self.limiter is not None or self.contact is not None:
@@ -305,17 +305,13 @@ def _dry_guess(film: LinerFilm) -> None:
     if film.oil is not None and film.beta > 0.0:
         guess, most = _transformed(film, film.oil, guess), _transformed(film, film.oil, most)
     fixed = film.film.grid.fixed
-    if _at_rest(film):
+    still = film.film.vx == film.film.vz == film.rates.liner == film.rates.mass == 0.0
+    if still and not film.rigid[2].any():
+        # the pressure lies between the prescribed ones
         guess = np.minimum(guess, film.P[fixed].max(initial=0.0))
     lowest = film.film.system.cavity_pressure if film.film.ruptures else 0.0
     film.P[~fixed] = np.maximum(guess, lowest)[~fixed]
     film.fill_up(most)
-
-
-def _at_rest(film: LinerFilm) -> bool:
-    """Return whether nothing moves: the pressure then lies between the prescribed ones."""
-    still = film.film.vx == film.film.vz == film.rates.liner == film.rates.mass == 0.0
-    return still and not film.rigid[2].any()
 
 
 def _transformed(film: LinerFilm, oil: PressureTransform, guess: np.ndarray) -> np.ndarray:
@@ -343,7 +339,8 @@ def pseudo_transient(film: LinerFilm) -> tuple[bool, int]:
 
     def attempt(extra: float) -> tuple[bool, int]:
         film.rates = rates._replace(pseudo=extra)
-        film.pseudo_old[:] = _stored(film)
+        # pseudo time stores mass, or the deflection under the unclipped pressure of the film
+        film.pseudo_old[:] = f.content if film.kind == OIL else film.beta * (film.load.p + (film.P - film.load.drive))
         ok, steps = film.solve()
         film.rates, work.ready = rates, work.ready and extra == 0.0
         work.warm = work.warm or ok
@@ -354,14 +351,6 @@ def pseudo_transient(film: LinerFilm) -> tuple[bool, int]:
         return ok, steps
 
     return pseudo_time(attempt, rate)
-
-
-def _stored(film: LinerFilm) -> np.ndarray:
-    """Quantity (n, m) that pseudo time stores, at the present state: mass, or deflection under the unclipped
-    pressure of the film."""
-    if film.kind != OIL:
-        return film.beta * (film.load.p + (film.P - film.load.drive))
-    return film.film.content
 
 
 def failure(film: LinerFilm) -> Status:

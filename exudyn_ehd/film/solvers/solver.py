@@ -13,7 +13,6 @@ import numpy as np
 
 from exudyn_ehd.compilation import TOLERANCE
 from exudyn_ehd.film.cavitation.closures import Closure, status_of
-from exudyn_ehd.film.cavitation.rupture_line import FilmLine
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
@@ -225,7 +224,7 @@ class FilmSolver(FilmAnswers):
             self.density.scale = self.pressure_scale
         self.set_links()
         self.set_right_hand_side()
-        line = s.line if isinstance(s.line, FilmLine) else s.oil_line
+        line = None if self.symmetric else s.line or s.oil_line
         if line is not None:
             line.take(s.terms, s.b, self.cavity_density, self.vx)
         if self.closure.clips:

@@ -150,11 +150,6 @@ class WinklerElements:
         """dD/dP at the unknown and the prescribed pressures (n, m) of the last solution; zero elsewhere."""
         return np.where(self.film.work.active | self.film.grid.fixed, self.gap_slopes.D_P, 0.0)
 
-    @property
-    def contact_by_pressure(self) -> np.ndarray:
-        """d(contact pressure)/dP, Pa, at the pressures (n, m) of `deflection_by_pressure`; zero elsewhere."""
-        return self.touching * self.contact_G * self.scale * self.deflection_by_pressure
-
     def smallest_gap(self) -> float:
         """Smallest scaled gap of the deformed surfaces."""
         return float(min(self.true_gap.min(), self.true_link.min()))

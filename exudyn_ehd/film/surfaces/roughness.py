@@ -111,7 +111,8 @@ import scipy
 from numba import njit
 
 from exudyn_ehd.compilation import FAST
-from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drop_weights, drops, on_links, to_ends
+from exudyn_ehd.film.reynolds.gap import drop_weights, drops, on_links, to_ends
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 from exudyn_ehd.status import NOT_NEGATIVE, POSITIVE, Checked, InputError, require_number
 

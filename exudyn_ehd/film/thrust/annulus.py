@@ -34,7 +34,8 @@ import numpy as np
 from exudyn_ehd.film.cavitation.closures import Closure, FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.grid import FilmGrid, axial_vertices, bearing_grid, rows_between
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drop_weights, drops, on_links, to_ends
+from exudyn_ehd.film.reynolds.gap import drop_weights, drops, on_links, to_ends
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.status import (
     POSITIVE,

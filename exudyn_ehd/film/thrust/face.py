@@ -42,7 +42,8 @@ from exudyn_ehd.film.loads import end_flows
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant, transform_of
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.reynolds.links import LinkLaw, to_ends
+from exudyn_ehd.film.reynolds.gap import to_ends
+from exudyn_ehd.film.reynolds.links import LinkLaw
 from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver

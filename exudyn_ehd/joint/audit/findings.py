@@ -42,10 +42,6 @@ class Limit(NamedTuple):
     much: float = math.inf
     much_on: float = math.inf
 
-    def is_beyond(self, value: float) -> bool:
-        """Return whether the effect matters by its value."""
-        return value < self.value if self.below else value > self.value
-
     def is_unclear(self, value: float, on: bool | None) -> bool:
         """Return whether the value leaves open if the effect matters, so that films have to be compared."""
         if self.nothing is None or value > (self.much_on if on else self.much):
@@ -309,7 +305,7 @@ def judged(
             switch, mattering = None, f"{mattering} {refusal}"
         else:
             change = case.change(switch if probe is None else probe)
-    matters, is_idle, advice = limit.is_beyond(value), change is None, ""
+    matters, is_idle, advice = value < limit.value if limit.below else value > limit.value, change is None, ""
     if change is not None and change.found:
         matters, is_idle = change.size > MATTERS, change.size < NOTHING
     unneeded = on is True and needless is not None and is_idle and not matters

@@ -134,7 +134,10 @@ def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmStat
     turns = 0.5 * (record.motion[1:, 8] + record.motion[:-1, 8]) * intervals
     spin = np.concatenate([[0.0], np.cumsum(turns)])
     flexible = model.flexible
-    motions = _differenced(record) if flexible else record.motion
+    motions = record.motion.copy()
+    if flexible:
+        # rates of an integrator may alternate with those of a flexible bore, which a record does not contain
+        motions[1:, 4:8] = np.diff(record.motion[:, :4], axis=0) / np.diff(record.time)[:, None]
     turned = np.concatenate([[0.0], np.cumsum(np.abs(turns))])
     states: list[FilmState] = []
     reached, history, step = -1, None, 0.0
@@ -166,16 +169,6 @@ def _replayed(turned: np.ndarray, first: int, last: int) -> list[int]:
     recent = max(first, last - REPLAYED)
     early = np.searchsorted(turned, np.arange(turned[first], turned[recent], 2.0 * math.pi / REPLAYED))
     return np.unique(np.concatenate([np.maximum(early, first), np.arange(recent, last + 1)])).tolist()
-
-
-def _differenced(record: RecordedSteps) -> np.ndarray:
-    """Motions (n, 10) with rates from the differences of the recorded poses.
-
-    Rates of an integrator may alternate with those of a flexible bore, which a record does not contain.
-    """
-    motions = record.motion.copy()
-    motions[1:, 4:8] = np.diff(record.motion[:, :4], axis=0) / np.diff(record.time)[:, None]
-    return motions
 
 
 def _first_history(model: BearingModel, record: RecordedSteps, k: int) -> History | None:

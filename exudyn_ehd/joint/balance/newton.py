@@ -162,11 +162,8 @@ class Balance:
             film = evaluation.heat_with(beside.heat) or film
         thinner, change = 1.0, np.zeros(0)
         if thermal is not None:
-            try:
-                thermal.upwind = self.rough
-                change = thermal.steady_temperature(film) - T
-            finally:
-                thermal.upwind = False
+            thermal.upwind = self.rough
+            change = thermal.steady_temperature(film) - T
             size = float(np.abs(change).max())
             if not size < math.inf:
                 raise FilmError(f"{self.where}: the film is heated, and its heat has no way out; {WAY_OUT}")
@@ -195,10 +192,6 @@ class Balance:
     def error(self, place: Place) -> float:
         """The larger of the residual and of the temperature's change over `LARGEST_CHANGE`."""
         return max(self.residual(place), float(np.abs(place.change).max(initial=0.0)) / LARGEST_CHANGE)
-
-    def is_near(self, place: Place) -> bool:
-        """Return whether a search is so near to its end that Anderson's acceleration helps."""
-        return self.residual(place) < 1.0 and float(np.abs(place.change).max(initial=0.0)) < ACCELERATED
 
     def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = ROUNDING) -> bool:
         """Return whether the residual is below a tolerance, and the change of the temperature negligible."""
@@ -232,7 +225,8 @@ class Balance:
         past: list[tuple[np.ndarray, np.ndarray]] = []
         best, smallest, idle, part, damping, highest = here, self.error(here), 0, 1.0, 1.0, 1e12 * resistance
         for _ in range(rounds):
-            if self.rough and self.is_near(here):
+            # so near to the end that Anderson's acceleration helps
+            if self.rough and self.residual(here) < 1.0 and np.abs(here.change).max(initial=0.0) < ACCELERATED:
                 self.rough = False
                 best = here = self.at(here.motion, here.temperature)
                 past, smallest = [], self.error(here)

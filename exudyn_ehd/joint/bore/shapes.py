@@ -267,10 +267,6 @@ class Bore(abc.ABC):
         """S^T diag(f) S (k, k) for a field f (n, m)."""
         return dense(self._onto @ (diags_array(field.ravel()) @ self.shapes))
 
-    def without_journal(self, q: np.ndarray) -> np.ndarray:
-        """Return the displacement (n, m) of the bore itself, without an elastic journal's part of q."""
-        return self.displacement(np.where(np.arange(self.size) < self.own, q, 0.0))
-
     @abc.abstractmethod
     def end_shapes(self) -> np.ndarray:
         """Return S (2, k) for linear pressures that vanish at one end: the first at L/2, the second at -L/2.

@@ -50,7 +50,8 @@ from exudyn_ehd.film.heat.energy import (
     weight_along,
 )
 from exudyn_ehd.film.heat.options import FilmEnergy
-from exudyn_ehd.film.reynolds.links import LinkFlux, drops, to_ends
+from exudyn_ehd.film.reynolds.gap import drops, to_ends
+from exudyn_ehd.film.reynolds.links import LinkFlux
 from exudyn_ehd.joint.heat.equations import MIXED, STAGNANT, HeatBalance, linear
 from exudyn_ehd.joint.heat.power import conductances_of, dropped, sheared
 from exudyn_ehd.joint.heat.temperature import Field

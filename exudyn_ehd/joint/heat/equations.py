@@ -138,8 +138,8 @@ class HeatBalance:
 
     def links(self) -> tuple[np.ndarray, np.ndarray]:
         """Inverse lengths of the links in theta and z for the limiter of `transport_slopes`; 0: of first order."""
-        grid = self.film.grid
-        return np.zeros_like(grid.link_x) if self.thermal.upwind else grid.link_x, grid.link_z
+        grid, rough = self.film.grid, self.thermal.upwind and not self.store.any()
+        return np.zeros_like(grid.link_x) if rough else grid.link_x, grid.link_z
 
     def stirred(self) -> np.ndarray:
         """Exchange (2, n, m) over the links in theta and z that mixes supply areas, and rows at the sides of dams."""

@@ -69,7 +69,7 @@ class OilTemperature(abc.ABC):
     initial_leaving: np.ndarray | None = None
     # given temperatures around the film besides that of the supply, K
     around: tuple[float, ...] = ()
-    # whether a temperature field is transported along theta with first order
+    # whether a steady temperature field is transported along theta with first order, as searches begin
     upwind = False
 
     @abc.abstractmethod
@@ -129,24 +129,18 @@ class OilTemperature(abc.ABC):
         if known is not history or size != step:
             assert history is not None
             start, change = self.state_of(history), step * heating[1]
-            T = self.warmed(start, change * self._kept_of_fall(history, change[0]))
+            # a film that is D above the coldest temperature and falls comes to D exp(change / D)
+            room, fall = self.across(start)[0] - self.coldest(history), np.minimum(change[0], 0.0)
+            kept = np.ones_like(fall)
+            np.divide(room * np.expm1(fall / np.maximum(room, SMALL)), fall, out=kept, where=fall < 0.0)
+            T = self.warmed(start, change * kept)
             self._extrapolated = history, step, T
         return T
 
     def coldest(self, history: History | None) -> float:
         """Temperature, K, below which the film cannot fall in a step: the least of film, walls and what flows in."""
-        sump = math.inf if history is None or history.sump is None else history.sump
-        return min(self.supply, sump, *self.around, float(np.min(self.state_of(history))))
-
-    def _kept_of_fall(self, history: History, change: np.ndarray) -> np.ndarray:
-        """Return the share of a linear ``change``, K, that is left of a fall towards the coldest temperature.
-
-        A film above it by D that falls with the rate of its start, ``change``, comes to ``D exp(change / D)``.
-        """
-        fall, kept = np.minimum(change, 0.0), np.ones_like(change)
-        room = self.across(self.state_of(history))[0] - self.coldest(history)
-        np.divide(room * np.expm1(fall / np.maximum(room, SMALL)), fall, out=kept, where=fall < 0.0)
-        return kept
+        sumps = [] if history is None or history.sump is None else [history.sump]
+        return min(self.supply, *sumps, *self.around, float(np.min(self.state_of(history))))
 
     def start(self, film: SolvedFilm) -> tuple[Field, np.ndarray]:
         """Return 1 - kappa of a film's step, and T + kappa h T' of the fields of `across`."""

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from exudyn_ehd.film.loads import couette_integral, journal_wrench, pressure_integrals
-from exudyn_ehd.film.reynolds.links import on_links
+from exudyn_ehd.film.reynolds.gap import on_links
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.supply.cuts import RecessShear, recess_shear
@@ -50,8 +50,10 @@ def film_loads(
         extra_z += half * around * float(scales.ends[1] ** 2 - scales.ends[0] ** 2)
         if scales.edges is not None:
             extra_theta += half * float(signs @ scales.edges**2) * float(g.weight_z.sum())
-    drag = drag_weights(parts, limited) if pulls_unevenly(parts, limited) else None
-    if drag is not None:
+    # where the shear of a pressure gradient on a surface differs from half its force on the true gap
+    lined, drag = parts.liner is not None and parts.liner.limiter is not None, None
+    if parts.uneven_drag or limited is not None or lined:
+        drag = drag_weights(parts, limited)
         extra_theta += float(np.vdot(drag[0], P))
         extra_z += float(np.vdot(drag[1], P))
     if oil.ratio is None and not s.closure.conserves_mass:
@@ -84,11 +86,6 @@ def film_loads(
             at = friction, transition, g.reference_length
             add_contact(P_c, g.weight, g.moments, journal.motion, *at, sums, contact, wrench)
     return Loads(wrench, contact, integrals, couette, s_theta, recess, drag)
-
-
-def pulls_unevenly(parts: FilmParts, limited: LimiterFields | None) -> bool:
-    """Return whether the shear of a pressure gradient on a surface differs from half its force on the true gap."""
-    return parts.uneven_drag or limited is not None or (parts.liner is not None and parts.liner.limiter is not None)
 
 
 def drag_weights(parts: FilmParts, limited: LimiterFields | None) -> np.ndarray:

@@ -40,7 +40,8 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import FiniteLength
-from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux, drops, to_ends
+from exudyn_ehd.film.reynolds.gap import drops, to_ends
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
 from exudyn_ehd.status import POSITIVE, Checked, InputError, require_count, require_number, require_type, require_vector
 

@@ -54,7 +54,7 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.energy import film_flows, film_heat
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import transform_of
-from exudyn_ehd.film.reynolds.links import on_links
+from exudyn_ehd.film.reynolds.gap import on_links
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.solvers.solver import FilmSolver

@@ -13,7 +13,7 @@ import numpy as np
 import scipy
 
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
-from exudyn_ehd.film.reynolds.links import on_links
+from exudyn_ehd.film.reynolds.gap import on_links
 from exudyn_ehd.film.solvers.film import shear_by_unknown
 from exudyn_ehd.joint.balance.limits import WAY_OUT, require_oil_bears
 from exudyn_ehd.joint.solved_film import BESIDE, History, SolvedFilm

@@ -16,8 +16,7 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.loads import couette_gradient, integral_weights, load_adjoint_rhs, wrench_gradient
-from exudyn_ehd.film.reynolds.gap import Gradients, functional_gradients, join
-from exudyn_ehd.film.reynolds.links import to_ends
+from exudyn_ehd.film.reynolds.gap import Gradients, functional_gradients, join, to_ends
 from exudyn_ehd.film.solvers.film import at_beside_ends, shear_by_unknown
 from exudyn_ehd.film.solvers.liner import LinerFilm
 from exudyn_ehd.film.solvers.sor import ClassicSolver
@@ -194,7 +193,8 @@ def _rows_at(film: SolvedFilm, at: np.ndarray, continued: np.ndarray | None) -> 
     if liner is not None and film.loads.drag is not None:
         rows[own - 2 : own] += drag_by_deflection(film, liner).reshape(2, -1)[:, at]
     if liner is not None and pressed:
-        by_pressure = g.weight * liner.contact_by_pressure
+        # d(contact pressure)/dP, Pa
+        by_pressure = g.weight * liner.touching * liner.contact_G * liner.scale * liner.deflection_by_pressure
         load_adjoint_rhs(at, at.size, by_pressure, g.gap_shapes, active, rows[own:])
         rows[own + 4] = by_pressure.ravel()[at]
     return rows

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.reynolds.links import on_links
+from exudyn_ehd.film.reynolds.gap import on_links
 from exudyn_ehd.film.surfaces.roughness import drag_by_gap, drag_weights
 
 
