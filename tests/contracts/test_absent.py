@@ -111,7 +111,7 @@ EFFECTS = {
         {"film": SMALL_MAP, "end_pressures": (0.0, 0.0)},
     ),
     "line on a liner": (
-        ("film.cavitation.rupture_line:RuptureLine.take",),
+        ("film.cavitation.rupture_line:limit_by_liner",),
         {"cavitation": ehd.SwiftStieber(line_in_cells=True), "bush": LINER},
     ),
     "line of a film that conserves mass on a liner": (

@@ -326,23 +326,13 @@ class FilmArrays:
 
     def flows_by_fills(self) -> csc_matrix:
         """Derivative (n m, n m) of the fills of the flows to the fills of the vertices, of a steady film."""
-        s, (n, m), where = self.system, self.grid.shape, np.arange(self.grid.area.size)
-        fill, outflow = self._outflow()
-        links = self.grid.link_x, self.grid.link_z
+        s, (n, m), here = self.system, self.grid.shape, np.arange(self.grid.area.size)
+        (fill, outflow), links = self._outflow(), (self.grid.link_x, self.grid.link_z)
         slopes = rise_slopes(s.fx, s.fz, outflow[0], links, self.oil_line is not None) * (fill < 1.0)
-        i, j = np.divmod(where, m)
-        on = [
-            (i + 1) % n * m + j,
-            (i - 1) % n * m + j,
-            i * m + np.minimum(j + 1, m - 1),
-            i * m + np.maximum(j - 1, 0),
-            where,
-        ]
-        rows, columns = np.tile(where, 5), np.concatenate(on)
-        moving = (fill < 1.0).ravel()[columns]
-        return csc_matrix((slopes.ravel() * moving, (rows, columns)), shape=(n * m, n * m)) + identity(
-            n * m, format="csc"
-        )
+        across = here + (here % m < m - 1), here - (here % m > 0)
+        columns = np.concatenate([(here + m) % here.size, (here - m) % here.size, *across, here])
+        by_fill = slopes.ravel() * (fill < 1.0).ravel()[columns], (np.tile(here, 5), columns)
+        return csc_matrix(by_fill, shape=(n * m, n * m)) + identity(n * m, format="csc")
 
     def flooded(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the result of `memory` for a full film at the present gaps, without flows so far."""
@@ -361,9 +351,9 @@ class FilmArrays:
 
     def hold_back(self) -> None:
         """Do not average flows that would carry away more than the start-of-step content, for the present links."""
+        s = self.system
         if self.lagging:
-            content = self.system.inverse_step * self.system.mass_old
-            hold_back(self.system.fields, content, self.system.late, self.system.rise)
+            hold_back(s.fields, s.inverse_step * s.mass_old, s.late, s.rise)
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette flows of the links in theta and z, and rate of a full film's content per area, all (n, m); mass flows

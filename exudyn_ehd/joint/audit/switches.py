@@ -184,7 +184,11 @@ def swift_stieber(bearing: JournalBearing) -> JournalBearing:
 
 def refined(n_theta: int, n_z: int) -> Switch:
     """Return a switch to a grid of this size."""
-    return lambda bearing: replace(bearing, film=replace(bearing.film, n_theta=n_theta, n_z=n_z))
+    return partial(_on_grid, n_theta, n_z)
+
+
+def _on_grid(n_theta: int, n_z: int, bearing: JournalBearing) -> JournalBearing:
+    return replace(bearing, film=replace(bearing.film, n_theta=n_theta, n_z=n_z))
 
 
 # Switches that remove an effect, or add one that does not depend on the bearing.
