@@ -305,11 +305,11 @@ def _add_rise(fill, last, own, on, flows, links, in_cells, out, first):
 
 
 @njit(cache=True, inline="always")
-def _rise(fx, fz, fill, links, in_cells, i, j):
-    """Return the rise of the fill from a vertex to the middles of the links downstream, weighted by their flows and
-    within the bounds of `lag_void`, and its derivatives to the next and the last fill in theta, then in z, and to the
-    own one."""
-    (n, m), (x, z), own, out = fill.shape, links, fill[i, j], np.zeros(6)
+def _rise(fx, fz, fill, links, in_cells, i, j, out):
+    """Set the rise of the fill from a vertex to the middles of the links downstream, weighted by their flows and within
+    the bounds of `lag_void`, and its derivatives to the next and the last fill in theta, then in z, and to the own one;
+    ``out`` (6,)."""
+    (n, m), (x, z), own, out[:] = fill.shape, links, fill[i, j], 0.0
     leaves = _leaves(fx, fz, i, j)
     if leaves > 0.0:
         up, on = (i - 1 if i > 0 else n - 1), (i + 1 if i + 1 < n else 0)
@@ -320,7 +320,6 @@ def _rise(fx, fz, fill, links, in_cells, i, j):
     out[5] = -out[1:5].sum()
     if not -LARGEST_LAG * own <= out[0] <= LARGEST_LAG * (1.0 - own):
         out[0], out[1:5], out[5] = min(max(out[0], -LARGEST_LAG * own), LARGEST_LAG * (1.0 - own)), 0.0, -LARGEST_LAG
-    return out
 
 
 @njit(cache=True)
@@ -332,14 +331,16 @@ def outflow_of(fx, fz, H, H_t, area, links, in_cells, fill):
     inside the cells. A vertex with a line has the fill 1.
     """
     n, m = fill.shape
-    out = np.empty((4, n, m))
+    out, by = np.empty((4, n, m)), np.zeros(6)
     for i in range(n):
         for j in range(m):
             volume = area[i, j] * H[i, j]
             out[0, i, j] = fill[i, j]
             out[1, i, j] = H_t[i, j] / H[i, j]
             out[2, i, j] = _leaves(fx, fz, i, j) / volume if volume > 0.0 else 0.0
-            out[3, i, j] = _rise(fx, fz, fill, links, in_cells, i, j)[0]
+            if fill[i, j] < 1.0:
+                _rise(fx, fz, fill, links, in_cells, i, j, by)
+            out[3, i, j] = by[0] if fill[i, j] < 1.0 else 0.0
     return out
 
 
@@ -348,7 +349,7 @@ def move_upstream(fx, fz, links, in_cells, out):
     """Change fill and rise in the result (4, n, m) of `outflow_of`, from the fills of a steady film, which are those
     of its flows, to fills of the vertices; their sum is kept."""
     fill, rise = out[0], out[3]
-    (n, m), flows, change = fill.shape, fill.copy(), 1.0
+    (n, m), flows, change, by = fill.shape, fill.copy(), 1.0, np.zeros(6)
     for _ in range(MOST_SWEEPS):
         for i in range(n):
             for j in range(m):
@@ -359,10 +360,10 @@ def move_upstream(fx, fz, links, in_cells, out):
         change = 0.0
         for i in range(n):
             for j in range(m):
-                new = _rise(fx, fz, fill, links, in_cells, i, j)[0]
                 if flows[i, j] < 1.0:
-                    change = max(change, abs(new - rise[i, j]))
-                    rise[i, j] = new
+                    _rise(fx, fz, fill, links, in_cells, i, j, by)
+                    change = max(change, abs(by[0] - rise[i, j]))
+                    rise[i, j] = by[0]
 
 
 @njit(cache=True)
@@ -370,11 +371,11 @@ def rise_slopes(fx, fz, fill, links, in_cells):
     """Return the derivatives (5, n, m) of the rises to the next and the last fill in theta, then in z, and to the own
     one."""
     n, m = fill.shape
-    out = np.zeros((5, n, m))
+    out = np.zeros((6, n, m))
     for i in range(n):
         for j in range(m):
-            out[:, i, j] = _rise(fx, fz, fill, links, in_cells, i, j)[1:]
-    return out
+            _rise(fx, fz, fill, links, in_cells, i, j, out[:, i, j])
+    return out[1:]
 
 
 @njit(cache=True)
