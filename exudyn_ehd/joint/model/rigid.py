@@ -244,15 +244,8 @@ class BearingModel:
         void, mass, outflow = s.flooded() if remembers else (None, None, None)
         new = History() if effects.thermal is None else effects.thermal.first_memory()
         wear = None if effects.wear is None else effects.wear.field(None).copy()
-        new = replace(
-            new,
-            void=void,
-            mass=mass,
-            outflow=outflow,
-            wear=wear,
-            pockets=s.pockets if found else None,
-            growth=s.nothing if remembers and effects.gap_terms else None,
-        )
+        still, pockets = s.nothing if remembers and effects.gap_terms else None, s.pockets if found else None
+        new = replace(new, void=void, mass=mass, outflow=outflow, wear=wear, pockets=pockets, growth=still)
         if found and self.remembers_deflection and liner is not None:
             new = replace(new, deflection=liner.deflection)
             for _ in range(2 if s.oil_line else 0):
