@@ -13,8 +13,8 @@ With an effect (flow factors of rough surfaces, shear thinning, a temperature fi
 Symbols: H (n, m) gap at vertices, HF (n, m) gap on the link i -> i+1, kx / kz link conductances with their metric, fx /
 fz Couette fluxes with their metric, b right-hand side of ``A P = b``, P scaled pressure.
 
-Couette flows out of a cavity: transport of second order in time and space
---------------------------------------------------------------------------
+Couette flows out of a cavity, averaged over the step: transport of second order in time
+----------------------------------------------------------------------------------------
 With the void ``v = H - fill H`` and the transport speed U, the mass balance of a film reads
 
     dv/dt + div (U v) = dH/dt + div (U H) + div (pressure flow).
@@ -32,16 +32,8 @@ stay linear, and its derivatives exact.
 
 If a step carries C times the content of a vertex away, a void without inflow is multiplied by
 ``(1 - w C) / (1 + (1 - w) C)``. For ``w C < 1`` this lies between 0 and 1, so that the void decays without a change of
-sign. For any C, w ``late`` carries less than half of the content away. w is 0 in gaps that open or close by more than
-the oil in them.
-
-The fill of a vertex would carry the oil with an error of first order in the length of a link. In time it would smooth
-the oil content along theta, most where the oil moves slowly against the cavity, as in whirl at half of the speed. So
-``late`` also holds the rise of the fill from the vertex to the middles of the links downstream, with the limiter of
-van Leer (J. Computational Physics 14 (1974) 361). It is that at the start of the step, so that the equations stay
-linear. Between -0.45 late and 0.45 (1 - late) it leaves the fill of the flow between 0 and 1. The equations of a steady
-film contain only the fills of its flows. Those of the vertices follow from them (`move_upstream`), so that a run which
-begins with a steady film stays there. The shear in a cavity has the fills of the flows in both cases.
+sign. For any C, ``late`` carries at most half of the content away. w is 0 in gaps that open or close by more than the
+oil in them.
 """
 
 from __future__ import annotations
@@ -51,7 +43,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.compilation import FAST, I0, I1, TOLERANCE
+from exudyn_ehd.compilation import FAST, I0, I1
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.balance import next_values
 
@@ -269,11 +261,11 @@ def set_links(H, HF, flow, metric, vx, vz, terms):
     _set_along(I1, h, next_values(h, I1), flow, by, vz, out)
 
 
-# Largest number of sweeps to the fills of the vertices of a steady film; most films take 50 to 150.
-MOST_SWEEPS = 200
-# Largest w, and largest part of a vertex's content that ``late`` may carry away in a step. The value 0.5 would be of
-# exactly second order, but would not damp short waves; smaller ones damp more and are less accurate.
+# Largest w. The value 0.5 would be of exactly second order, but would not damp short waves; smaller ones damp more and
+# are less accurate.
 LARGEST_LAG = 0.45
+# Largest part of a vertex's content that ``late`` may carry away in a step; larger values allow negative fills.
+LARGEST_OUTFLOW = 0.5
 
 
 @njit(cache=True, inline="always")
@@ -283,125 +275,43 @@ def _leaves(fx, fz, i, j):
     return out_x + out_z
 
 
-@njit(cache=True, inline="always")
-def _add_rise(fill, last, own, on, flows, links, in_cells, out, first):
-    """Add the rise of the fill to the middle of the link downstream along one axis, by van Leer's limiter.
-
-    It is half a link times the harmonic mean of the slopes on both sides, and 0 at extrema, or where flows over both
-    links differ in sign. With a line inside the cells it is 0 also behind a full vertex, so that the fill stays below
-    that at which a vertex has a line. ``last``, ``own``, ``on``: places in ``fill``; ``flows``, ``links``: shares of
-    the outflow and inverse lengths of both links; ``first``: first derivative of the axis in ``out``, see `_rise`.
-    """
-    forward = flows[1] > 0.0
-    before, after = (last, on) if forward else (on, last)
-    to, away = (links[0], links[1]) if forward else (links[1], links[0])
-    back, ahead = (fill[own] - fill[before]) * to, (fill[after] - fill[own]) * away
-    if not (flows[0] * flows[1] > 0.0 and back * ahead > 0.0) or (in_cells and fill[before] >= 1.0):
-        return
-    share, flow = ahead / (back + ahead), abs(flows[1] if forward else flows[0])
-    out[0] += flow * share * back / away
-    out[first + forward] -= flow * share * share * to / away
-    out[first + 1 - forward] += flow * (1.0 - share) ** 2
-
-
-@njit(cache=True, inline="always")
-def _rise(fx, fz, fill, links, in_cells, i, j, out):
-    """Set the rise of the fill from a vertex to the middles of the links downstream, weighted by their flows and within
-    the bounds of `lag_void`, and its derivatives to the next and the last fill in theta, then in z, and to the own one;
-    ``out`` (6,)."""
-    (n, m), (x, z), own, out[:] = fill.shape, links, fill[i, j], 0.0
-    leaves = _leaves(fx, fz, i, j)
-    if leaves > 0.0:
-        up, on = (i - 1 if i > 0 else n - 1), (i + 1 if i + 1 < n else 0)
-        _add_rise(fill[:, j], up, i, on, (fx[up, j] / leaves, fx[i, j] / leaves), (x[up], x[i]), in_cells, out, 1)
-        if 0 < j < m - 1:
-            flows = fz[i, j - 1] / leaves, fz[i, j] / leaves
-            _add_rise(fill[i], j - 1, j, j + 1, flows, (z[j - 1], z[j]), in_cells, out, 3)
-    out[5] = -out[1:5].sum()
-    if not -LARGEST_LAG * own <= out[0] <= LARGEST_LAG * (1.0 - own):
-        out[0], out[1:5], out[5] = min(max(out[0], -LARGEST_LAG * own), LARGEST_LAG * (1.0 - own)), 0.0, -LARGEST_LAG
-
-
 @njit(cache=True)
-def outflow_of(fx, fz, H, H_t, area, links, in_cells, fill):
-    """Return fields (4, n, m) for the next step: fill; rate of the gap over the gap, 1/s; Couette outflow of a full
-    film over its volume, 1/s; rise of the fill to the middles of the links downstream.
-
-    ``links``: inverse lengths (n,) and (m - 1,) of the links in theta and z; ``in_cells``: whether rupture lines lie
-    inside the cells. A vertex with a line has the fill 1.
-    """
+def outflow_of(fx, fz, H, H_t, area, fill):
+    """Return fields (3, n, m) for the next step: fill; rate of the gap over the gap, 1/s; Couette outflow of a full
+    film over its volume, 1/s."""
     n, m = fill.shape
-    out, by = np.empty((4, n, m)), np.zeros(6)
+    out = np.empty((3, n, m))
     for i in range(n):
         for j in range(m):
             volume = area[i, j] * H[i, j]
             out[0, i, j] = fill[i, j]
             out[1, i, j] = H_t[i, j] / H[i, j]
             out[2, i, j] = _leaves(fx, fz, i, j) / volume if volume > 0.0 else 0.0
-            if fill[i, j] < 1.0:
-                _rise(fx, fz, fill, links, in_cells, i, j, by)
-            out[3, i, j] = by[0] if fill[i, j] < 1.0 else 0.0
     return out
 
 
 @njit(cache=True)
-def move_upstream(fx, fz, links, in_cells, out):
-    """Change fill and rise in the result (4, n, m) of `outflow_of`, from the fills of a steady film, which are those
-    of its flows, to fills of the vertices; their sum is kept."""
-    fill, rise = out[0], out[3]
-    (n, m), flows, change, by = fill.shape, fill.copy(), 1.0, np.zeros(6)
-    for _ in range(MOST_SWEEPS):
-        for i in range(n):
-            for j in range(m):
-                if flows[i, j] < 1.0:
-                    fill[i, j] = flows[i, j] - rise[i, j]
-        if change < TOLERANCE:
-            break
-        change = 0.0
-        for i in range(n):
-            for j in range(m):
-                if flows[i, j] < 1.0:
-                    _rise(fx, fz, fill, links, in_cells, i, j, by)
-                    change = max(change, abs(by[0] - rise[i, j]))
-                    rise[i, j] = by[0]
-
-
-@njit(cache=True)
-def rise_slopes(fx, fz, fill, links, in_cells):
-    """Return the derivatives (5, n, m) of the rises to the next and the last fill in theta, then in z, and to the own
-    one."""
-    n, m = fill.shape
-    out = np.zeros((6, n, m))
-    for i in range(n):
-        for j in range(m):
-            _rise(fx, fz, fill, links, in_cells, i, j, out[:, i, j])
-    return out[1:]
-
-
-@njit(cache=True)
-def hold_back(fields, content, late, rise):
-    """Set ``prompt`` to 1, ``late`` and ``rise`` to 0 where ``late`` without the rise would carry away more than the
-    content at the start of the step, since flows have grown; ``content`` (n, m): over the step, 1/s."""
+def hold_back(fields, content, late):
+    """Set ``prompt`` to 1 and ``late`` to 0 where ``late`` would carry away more than the content at the start of the
+    step, since flows have grown; ``content`` (n, m): over the step, 1/s."""
     fx, fz, area, prompt = fields[2], fields[3], fields[7], fields[8]
     for i in range(late.shape[0]):
         for j in range(late.shape[1]):
-            held = late[i, j] - rise[i, j]
-            if held > 0.0 and held * _leaves(fx, fz, i, j) > area[i, j] * content[i, j]:
-                prompt[i, j], late[i, j], rise[i, j] = 1.0, 0.0, 0.0
+            if late[i, j] > 0.0 and late[i, j] * _leaves(fx, fz, i, j) > area[i, j] * content[i, j]:
+                prompt[i, j], late[i, j] = 1.0, 0.0
 
 
 @njit(cache=True)
-def lag_void(outflow, step, fixed, prompt_out, late_out, rise_out):
-    """Set ``prompt = 1 - w``, ``late`` and the rise of the fill in it (n, m) for a step, from the result of
-    `outflow_of` at its start; 1, 0 and 0 at vertices that were full."""
+def lag_void(outflow, step, fixed, prompt_out, late_out):
+    """Set ``prompt = 1 - w`` and ``w late`` (n, m) of a step from the result of `outflow_of` at its start; 1 and 0 at
+    vertices that were full."""
     n, m = fixed.shape
     for i in range(n):
         for j in range(m):
             fill, grows, drains = outflow[0, i, j], step * outflow[1, i, j], step * outflow[2, i, j]
-            prompt_out[i, j], late_out[i, j], rise_out[i, j] = 1.0, 0.0, 0.0
+            prompt_out[i, j], late_out[i, j] = 1.0, 0.0
             if fixed[i, j] or fill >= 1.0 or not min(fill, fill + grows) > 0.0:
                 continue
             late = (fill + grows) / (1.0 + grows)
-            w = min(LARGEST_LAG, late / fill, fill / late * min(1.0, LARGEST_LAG / max(drains, LARGEST_LAG)))
-            rise_out[i, j] = min(max(outflow[3, i, j], -LARGEST_LAG * late), LARGEST_LAG * (1.0 - late))
-            prompt_out[i, j], late_out[i, j] = 1.0 - w, w * late + rise_out[i, j]
+            w = min(LARGEST_LAG, late / fill, fill / late * min(1.0, LARGEST_OUTFLOW / max(drains, LARGEST_OUTFLOW)))
+            prompt_out[i, j], late_out[i, j] = 1.0 - w, w * late
