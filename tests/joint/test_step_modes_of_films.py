@@ -61,7 +61,9 @@ class Response:
             for place in np.argwhere(np.abs(getattr(memory, name)) > 1e-9)
         ]
         if memory is not None and memory.outflow is not None:
-            self.parts += [("outflow", (k, *place)) for k in (0, 1) for place in np.argwhere(memory.outflow[0] < 1.0)]
+            self.parts += [
+                ("outflow", (k, *place)) for k in (0, 1, 3) for place in np.argwhere(memory.outflow[0] < 1.0)
+            ]
 
         def ask(move=0.0, rate=0.0, memory=memory):
             at = motion.copy()
@@ -81,7 +83,7 @@ class Response:
         for name, place in self.parts:
             pair = []
             change = 1e-4 * np.abs(getattr(memory, name)[tuple(place)])
-            if name == "outflow":  # fills, and rates of gaps that are at rest
+            if name == "outflow":  # fills and their rises, and rates of gaps that are at rest
                 change = 1e-4 * memory.outflow[(0, *place[1:])] / (step if place[0] == 1 else 1.0)
             for side in (1.0, -1.0):
                 field = getattr(memory, name).copy()

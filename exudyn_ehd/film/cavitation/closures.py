@@ -246,6 +246,10 @@ class ElrodAdams(_Ruptures):
     The state of the film is the void, the part of the gap without oil. Oil flows balance to round-off. The oil content
     differs from their sum by at most half of a step's change of the gap, which does not accumulate over steps.
 
+    Along theta, oil is transported with second order in space and time. In five journals under loads that turn, the orbit
+    on 96 columns is within 2 % of the film thickness of that on 384 (``tests/mechanisms/test_oil_in_time.py``), with
+    steps in which the oil passes less than a column. Longer steps are less accurate.
+
     With ``line_in_cells=True`` (default grid, eccentricity ratio 0.6 to 0.9, L/D 0.5 and 1) the error of steady
     stiffness falls from 9 to 1.5 %, in two to three times the time. The spread of damping over the direction of the
     load falls from 8 to 1 % with a cavity pressure of -10 bar. The reformation line stays on vertices. Its effect is
@@ -310,6 +314,8 @@ class FilmSystem:
     prompt, late : (n, m) arrays
         Couette flows carry the fill ``prompt fill + late``, see `exudyn_ehd.film.reynolds.links`; 1 and 0 if it is not
         averaged over the step.
+    rise : (n, m) array
+        Part of ``late``: rise of the fill from the vertex to the links downstream, 0 in a steady film.
     inverse_step : float
         1 / time step since ``mass_old``, 1/s; 0: steady.
     closes : bool
@@ -354,7 +360,7 @@ class FilmSystem:
         self.closes, self.turns = False, 0.0
         empty = np.ones(shape if kind == OIL else (0, 0))
         self.fill, self.mass_old = empty, empty.copy()
-        self.prompt, self.late = self.terms.prompt, np.zeros(shape)
+        self.prompt, self.late, self.rise = self.terms.prompt, np.zeros(shape), np.zeros(shape)
         self.prompt[:] = 1.0
         self.line: RuptureLine | None = None
         self.column_line: ColumnLine | None = None

@@ -13,8 +13,8 @@ With an effect (flow factors of rough surfaces, shear thinning, a temperature fi
 Symbols: H (n, m) gap at vertices, HF (n, m) gap on the link i -> i+1, kx / kz link conductances with their metric, fx /
 fz Couette fluxes with their metric, b right-hand side of ``A P = b``, P scaled pressure.
 
-Couette flows out of a cavity, averaged over the step: transport of second order in time
-----------------------------------------------------------------------------------------
+Couette flows out of a cavity: transport of second order in time and space
+--------------------------------------------------------------------------
 With the void ``v = H - fill H`` and the transport speed U, the mass balance of a film reads
 
     dv/dt + div (U v) = dH/dt + div (U H) + div (pressure flow).
@@ -32,8 +32,21 @@ stay linear, and its derivatives exact.
 
 If a step carries C times the content of a vertex away, a void without inflow is multiplied by
 ``(1 - w C) / (1 + (1 - w) C)``. For ``w C < 1`` this lies between 0 and 1, so that the void decays without a change of
-sign. For any C, ``late`` carries at most half of the content away. w is 0 in gaps that open or close by more than the
-oil in them.
+sign. For any C, w ``late`` carries less than half of the content away. w is 0 in gaps that open or close by more than
+the oil in them.
+
+The fill of a vertex would carry the oil with an error of first order in the length of a link. In time it would smooth
+the oil content along theta, most where the oil moves slowly against the cavity, as in whirl at half of the speed. So
+``late`` also holds the rise of the fill from the vertex to the middle of the link downstream in theta, extrapolated
+from the vertex upstream (upwind differences of second order: R. F. Warming, R. M. Beam, AIAA J. 14 (1976) 1241). It is
+the rise at the start of the step, so that the equations stay linear. It is 0 beside full vertices, where a line lies
+between the vertices and fills jump. The rise is linear in the fills. With a limiter, stiffness and damping of small
+motions would differ from direction to direction. Between -0.45 late and 0.45 (1 - late) it leaves the fill of the flow
+between 0 and 1. If a step carries C times the content away, no wave grows for any C. Along z the order is the first.
+
+The equations of a steady film contain only the fills of its flows. Those of the vertices follow from them
+(`move_upstream`), so that a run which begins with a steady film stays there. The shear in a cavity has the fills of the
+flows in both cases.
 """
 
 from __future__ import annotations
@@ -43,7 +56,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.compilation import FAST, I0, I1
+from exudyn_ehd.compilation import FAST, I0, I1, TOLERANCE
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.balance import next_values
 
@@ -261,11 +274,9 @@ def set_links(H, HF, flow, metric, vx, vz, terms):
     _set_along(I1, h, next_values(h, I1), flow, by, vz, out)
 
 
-# Largest w. The value 0.5 would be of exactly second order, but would not damp short waves; smaller ones damp more and
-# are less accurate.
+# Largest w, and largest part of a vertex's content that ``late`` may carry away in a step. The value 0.5 would be of
+# exactly second order, but would not damp short waves; smaller ones damp more and are less accurate.
 LARGEST_LAG = 0.45
-# Largest part of a vertex's content that ``late`` may carry away in a step; larger values allow negative fills.
-LARGEST_OUTFLOW = 0.5
 
 
 @njit(cache=True, inline="always")
@@ -275,43 +286,105 @@ def _leaves(fx, fz, i, j):
     return out_x + out_z
 
 
+@njit(cache=True, inline="always")
+def _share_of_rise(fx, fz, fill, links, i, j):
+    """Return the rise of a vertex per change of the fill from the column upstream, and that column.
+
+    The rise is weighted by the part of the outflow that flows along theta. It is 0 beside full vertices, and where the
+    flows of both links differ in sign.
+    """
+    last, on, goes_on = (i - 1 if i > 0 else len(fx) - 1), (i + 1 if i + 1 < len(fx) else 0), fx[i, j] > 0.0
+    before, to, away = (last, links[last], links[i]) if goes_on else (on, links[i], links[last])
+    if fx[last, j] * fx[i, j] <= 0.0 or fill[last, j] >= 1.0 or fill[on, j] >= 1.0:
+        return 0.0, before
+    outflow = fx[i, j] if goes_on else -fx[last, j]
+    return 0.5 * outflow / _leaves(fx, fz, i, j) * to / away, before
+
+
 @njit(cache=True)
-def outflow_of(fx, fz, H, H_t, area, fill):
-    """Return fields (3, n, m) for the next step: fill; rate of the gap over the gap, 1/s; Couette outflow of a full
-    film over its volume, 1/s."""
+def outflow_of(fx, fz, H, H_t, area, links, fill):
+    """Return fields (4, n, m) for the next step: fill; rate of the gap over the gap, 1/s; Couette outflow of a full
+    film over its volume, 1/s; rise of the fill to the middles of the links downstream.
+
+    ``links`` (n,): inverse lengths of the links in theta. A vertex with a line has the fill 1.
+    """
     n, m = fill.shape
-    out = np.empty((3, n, m))
+    out = np.empty((4, n, m))
     for i in range(n):
         for j in range(m):
-            volume = area[i, j] * H[i, j]
-            out[0, i, j] = fill[i, j]
+            volume, own = area[i, j] * H[i, j], fill[i, j]
+            out[0, i, j] = own
             out[1, i, j] = H_t[i, j] / H[i, j]
             out[2, i, j] = _leaves(fx, fz, i, j) / volume if volume > 0.0 else 0.0
+            share, before = _share_of_rise(fx, fz, fill, links, i, j)
+            rise = share * (own - fill[before, j]) if own < 1.0 else 0.0
+            out[3, i, j] = min(max(rise, -LARGEST_LAG * own), LARGEST_LAG * (1.0 - own))
     return out
 
 
 @njit(cache=True)
-def hold_back(fields, content, late):
-    """Set ``prompt`` to 1 and ``late`` to 0 where ``late`` would carry away more than the content at the start of the
-    step, since flows have grown; ``content`` (n, m): over the step, 1/s."""
-    fx, fz, area, prompt = fields[2], fields[3], fields[7], fields[8]
-    for i in range(late.shape[0]):
-        for j in range(late.shape[1]):
-            if late[i, j] > 0.0 and late[i, j] * _leaves(fx, fz, i, j) > area[i, j] * content[i, j]:
-                prompt[i, j], late[i, j] = 1.0, 0.0
+def move_upstream(fx, fz, links, out):
+    """Change fill and rise in the result (4, n, m) of `outflow_of`, from the fills of a steady film, which are those
+    of its flows, to fills of the vertices; their sum is kept.
+
+    Sweeps go with the flow. On equal columns each one reduces the error to a third per column.
+    """
+    fill, rise, flows, change, goes_on = out[0], out[3], out[0].copy(), 1.0, fx[0, 0] > 0.0
+    n, m = fill.shape
+    while change > TOLERANCE:
+        change = 0.0
+        for k in range(n):
+            i = k if goes_on else n - 1 - k
+            for j in range(m):
+                if flows[i, j] < 1.0:
+                    share, before = _share_of_rise(fx, fz, fill, links, i, j)
+                    own = (flows[i, j] + share * fill[before, j]) / (1.0 + share)
+                    if flows[i, j] - own < -LARGEST_LAG * own:
+                        own = flows[i, j] / (1.0 - LARGEST_LAG)
+                    elif flows[i, j] - own > LARGEST_LAG * (1.0 - own):
+                        own = (flows[i, j] - LARGEST_LAG) / (1.0 - LARGEST_LAG)
+                    change = max(change, abs(own - fill[i, j]))
+                    fill[i, j], rise[i, j] = own, flows[i, j] - own
 
 
 @njit(cache=True)
-def lag_void(outflow, step, fixed, prompt_out, late_out):
-    """Set ``prompt = 1 - w`` and ``w late`` (n, m) of a step from the result of `outflow_of` at its start; 1 and 0 at
-    vertices that were full."""
+def rise_slopes(fx, fz, fill, rise, links):
+    """Return derivatives (2, n m) of the rises to the fill upstream and to the own one, and the flat indices (n m,) of
+    the former."""
+    m, out, places = fill.shape[1], np.zeros((2, fill.size)), np.empty(fill.size, dtype=np.int64)
+    for c in range(fill.size):
+        i, j = c // m, c % m
+        share, before = _share_of_rise(fx, fz, fill, links, i, j)
+        bound = min(rise[i, j] + LARGEST_LAG * fill[i, j], LARGEST_LAG * (1.0 - fill[i, j]) - rise[i, j]) <= TOLERANCE
+        out[0, c], out[1, c] = (0.0, -LARGEST_LAG) if bound else (-share, share)
+        places[c] = before * m + j
+    return out, places
+
+
+@njit(cache=True)
+def hold_back(fields, content, late, rise):
+    """Set ``prompt`` to 1, ``late`` and ``rise`` to 0 where ``late`` without the rise would carry away more than the
+    content at the start of the step, since flows have grown; ``content`` (n, m): over the step, 1/s."""
+    fx, fz, area, prompt = fields[2], fields[3], fields[7], fields[8]
+    for i in range(late.shape[0]):
+        for j in range(late.shape[1]):
+            held = late[i, j] - rise[i, j]
+            if held > 0.0 and held * _leaves(fx, fz, i, j) > area[i, j] * content[i, j]:
+                prompt[i, j], late[i, j], rise[i, j] = 1.0, 0.0, 0.0
+
+
+@njit(cache=True)
+def lag_void(outflow, step, fixed, prompt_out, late_out, rise_out):
+    """Set ``prompt = 1 - w``, ``late`` and the rise of the fill in it (n, m) for a step, from the result of
+    `outflow_of` at its start; 1, 0 and 0 at vertices that were full."""
     n, m = fixed.shape
     for i in range(n):
         for j in range(m):
             fill, grows, drains = outflow[0, i, j], step * outflow[1, i, j], step * outflow[2, i, j]
-            prompt_out[i, j], late_out[i, j] = 1.0, 0.0
+            prompt_out[i, j], late_out[i, j], rise_out[i, j] = 1.0, 0.0, 0.0
             if fixed[i, j] or fill >= 1.0 or not min(fill, fill + grows) > 0.0:
                 continue
             late = (fill + grows) / (1.0 + grows)
-            w = min(LARGEST_LAG, late / fill, fill / late * min(1.0, LARGEST_OUTFLOW / max(drains, LARGEST_OUTFLOW)))
-            prompt_out[i, j], late_out[i, j] = 1.0 - w, w * late
+            w = min(LARGEST_LAG, late / fill, fill / late * min(1.0, LARGEST_LAG / max(drains, LARGEST_LAG)))
+            rise_out[i, j] = min(max(outflow[3, i, j], -LARGEST_LAG * late), LARGEST_LAG * (1.0 - late))
+            prompt_out[i, j], late_out[i, j] = 1.0 - w, w * late + rise_out[i, j]

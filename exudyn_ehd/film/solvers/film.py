@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
+from scipy.sparse import csc_matrix, identity
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.closures import Closure, FilmSystem
@@ -43,7 +44,9 @@ from exudyn_ehd.film.reynolds.links import (
     lag_void,
     link_flux,
     link_metric,
+    move_upstream,
     outflow_of,
+    rise_slopes,
     set_links,
 )
 from exudyn_ehd.film.supply.restrictors import seal_ends
@@ -85,7 +88,8 @@ def ends_of_cavities(s: FilmSystem, conserves_mass: bool) -> list[tuple[int, int
 def shear_share(s: FilmSystem, active: np.ndarray, closure: Closure) -> np.ndarray:
     """Shear at each vertex over that of a full film (n, m)."""
     out = np.empty(s.fixed.shape)
-    _share(s.fill, active, s.fixed, s.pressure, s.cavity_pressure, closure.conserves_mass, closure.cavity_shear, out)
+    fill = s.fill + s.rise * (s.fill < 1.0) if closure.conserves_mass else s.fill
+    _share(fill, active, s.fixed, s.pressure, s.cavity_pressure, closure.conserves_mass, closure.cavity_shear, out)
     return out
 
 
@@ -300,36 +304,53 @@ class FilmArrays:
             s.mass_old[:] = mass_old
 
     def memory(self, mass: np.ndarray | None, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what the next step needs of the last solution and its step, (n, m), (n, m) and (3, n, m).
+        """Return what the next step needs of the last solution and its step, (n, m), (n, m) and (4, n, m).
 
         The void at the end of the step; the sum of oil flows: ``mass`` at its start plus the change of content in the
         step; fields of `exudyn_ehd.film.reynolds.links`. There a vertex at a line inside the cells counts as full,
         since the flows out of it follow its pressure, not its fill.
         """
-        s, line, content = self.system, self.oil_line, self.content
-        fill = s.fill if line is None else np.where(line.s < 1.0, 1.0, s.fill)
-        outflow = outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, fill)
+        s, (flows, outflow), content = self.system, self._outflow(), self.content
+        if s.inverse_step == 0.0:
+            content = content + self.rho * (outflow[0] - flows) * self.H
         return self.H - content, content if mass is None or step <= 0.0 else mass + content - s.mass_old, outflow
+
+    def _outflow(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the fills (n, m) of the last solution, and the fields (4, n, m) for the next step."""
+        s, line, links = self.system, self.oil_line, self.grid.link_x
+        fill = s.fill if line is None else np.where(line.s < 1.0, 1.0, s.fill)
+        outflow = outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, links, fill)
+        if s.inverse_step == 0.0:
+            move_upstream(s.fx, s.fz, links, outflow)
+        return fill, outflow
+
+    def flows_by_fills(self) -> csc_matrix:
+        """Derivative (n m, n m) of the fills of the flows to the fills of the vertices, of a steady film."""
+        s, (fill, outflow), here = self.system, self._outflow(), np.arange(self.grid.area.size)
+        slopes, before = rise_slopes(s.fx, s.fz, outflow[0], outflow[3], self.grid.link_x)
+        by_fill = (slopes * (fill < 1.0).ravel()).ravel(), (np.tile(here, 2), np.append(before, here))
+        return csc_matrix(by_fill, shape=(here.size, here.size)) + identity(here.size, format="csc")
 
     def flooded(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the result of `memory` for a full film at the present gaps, without flows so far."""
-        return self.nothing, self.H.copy(), np.array([self.ones, self.nothing, self.nothing])
+        return self.nothing, self.H.copy(), np.array([self.ones, self.nothing, self.nothing, self.nothing])
 
     def lag(self, outflow: np.ndarray | None, step: float) -> None:
-        """Average the next solution's flows out of cavities over its step, from ``outflow`` (3, n, m) at its start;
-        None, or a step of 0: no average."""
+        """Average the next solution's flows out of cavities over its step, from ``outflow`` (4, n, m) at its start;
+        None: no average."""
         s = self.system
-        if outflow is not None and step > 0.0:
-            lag_void(outflow, step, s.fixed, s.prompt, s.late)
+        if outflow is not None:
+            lag_void(outflow, step, s.fixed, s.prompt, s.late, s.rise)
             self.lagging = True
         elif self.lagging:
-            s.prompt[:], s.late[:] = 1.0, 0.0
+            s.prompt[:], s.late[:], s.rise[:] = 1.0, 0.0, 0.0
             self.lagging = False
 
     def hold_back(self) -> None:
         """Do not average flows that would carry away more than the start-of-step content, for the present links."""
+        s = self.system
         if self.lagging:
-            hold_back(self.system.fields, self.system.inverse_step * self.system.mass_old, self.system.late)
+            hold_back(s.fields, s.inverse_step * s.mass_old, s.late, s.rise)
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette flows of the links in theta and z, and rate of a full film's content per area, all (n, m); mass flows

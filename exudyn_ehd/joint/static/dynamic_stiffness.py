@@ -31,7 +31,8 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 from scipy.linalg import block_diag
-from scipy.sparse import csc_matrix, diags_array
+from scipy.sparse import block_diag as block_diag_sparse
+from scipy.sparse import csc_matrix, diags_array, identity
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.film.reynolds.gap import Gradients
@@ -137,6 +138,10 @@ class FilmResponse:
                 stored += whole * s.oil_line.rise
             stored = np.where(w.active, stored, whole)
         areas = s.unknowns - w.count  # number of supply areas with an unknown pressure
+        if s.closure.conserves_mass:
+            # the unknowns of a steady film are the fills of its flows
+            carried = block_diag_sparse((s.flows_by_fills()[order][:, order], identity(areas)), format="csc")
+            self.matrix, rows = self.matrix @ carried, rows @ carried
         self.store = diags_array(np.append(stored.reshape(-1)[order], np.zeros(areas)) + s.surroundings())
         if s.reservoirs is not None:
             filled = s.reservoirs.storage()

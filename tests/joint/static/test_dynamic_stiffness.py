@@ -103,11 +103,11 @@ def test_a_film_at_rest_is_the_steady_one_in_time():
         steady = model.evaluate(motion)
         history, force = steady.history(), steady.wrench
         below += int((model.solver.oil_line.s < 0.25).any())
-        for _ in range(2):
+        # round-off of one film solve against another; then the fills of the vertices, as exact as their search is
+        for limit in (1e-11, 1e-7):
             later = model.evaluate(motion, history, 10.0 ** rng.uniform(-5.0, -2.0))
             history = later.history()
-            # round-off of one film solve against another
-            assert np.abs(later.wrench - force).max() < 1e-11 * np.abs(force).max()
+            assert np.abs(later.wrench - force).max() < limit * np.abs(force).max()
     assert below > 3
 
 
