@@ -324,12 +324,13 @@ class FilmArrays:
             move_upstream(s.fx, s.fz, links, outflow)
         return fill, outflow
 
-    def flows_by_fills(self) -> csc_matrix:
-        """Derivative (n m, n m) of the fills of the flows to the fills of the vertices, of a steady film."""
+    def flows_by_fills(self) -> tuple[csc_matrix, np.ndarray]:
+        """Derivative (n m, n m) of the fills of the flows to the fills of the vertices, of a steady film, and their
+        differences (n, m)."""
         s, (fill, outflow), here = self.system, self._outflow(), np.arange(self.grid.area.size)
         slopes, before = rise_slopes(s.fx, s.fz, outflow[0], outflow[3], self.grid.link_x)
         by_fill = (slopes * (fill < 1.0).ravel()).ravel(), (np.tile(here, 2), np.append(before, here))
-        return csc_matrix(by_fill, shape=(here.size, here.size)) + identity(here.size, format="csc")
+        return csc_matrix(by_fill, shape=(here.size, here.size)) + identity(here.size, format="csc"), outflow[3]
 
     def flooded(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the result of `memory` for a full film at the present gaps, without flows so far."""

@@ -35,14 +35,14 @@ from scipy.sparse import block_diag as block_diag_sparse
 from scipy.sparse import csc_matrix, diags_array, identity
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.film.reynolds.gap import Gradients
+from exudyn_ehd.film.reynolds.gap import Gradients, join
 from exudyn_ehd.film.solvers.liner import LinerFilm
 from exudyn_ehd.joint.bore.shapes import Bore, dense
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import LARGEST_SPREAD, MOTION_SIZE, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import Balances, load_columns
-from exudyn_ehd.joint.tangent.wrench import balance_gradients, true_fills, wrench_rows
+from exudyn_ehd.joint.tangent.wrench import balance_gradients, to_true_gap, true_fills, wrench_rows
 from exudyn_ehd.status import ROUNDING, FilmError
 
 # Range of whirl ratios in which a threshold is searched; for journal bearings the whirl ratio is near one half.
@@ -138,10 +138,6 @@ class FilmResponse:
                 stored += whole * s.oil_line.rise
             stored = np.where(w.active, stored, whole)
         areas = s.unknowns - w.count  # number of supply areas with an unknown pressure
-        if s.closure.conserves_mass:
-            # the unknowns of a steady film are the fills of its flows
-            carried = block_diag_sparse((s.flows_by_fills()[order][:, order], identity(areas)), format="csc")
-            self.matrix, rows = self.matrix @ carried, rows @ carried
         self.store = diags_array(np.append(stored.reshape(-1)[order], np.zeros(areas)) + s.surroundings())
         if s.reservoirs is not None:
             filled = s.reservoirs.storage()
@@ -150,12 +146,21 @@ class FilmResponse:
         self.rows = rows.T.astype(complex)
         scale = -(film.scales.force * film.parts.motion_scale)[:, None]
         by_motion, by_fill = balance_gradients(film) * scale, np.zeros((MOTION_SIZE, w.count + areas))
-        fills, contents = true_fills(film), None
-        if fills is not None:  # of a film that conserves mass
-            contents = fills.weighed(whole, number)
+        contents = None
+        if s.closure.conserves_mass:
+            # the unknowns and the storage of a steady film are those with the fills of its flows, not of its vertices
+            carried, rise = s.flows_by_fills()
+            by_flow = block_diag_sparse((carried[order][:, order], identity(areas)), format="csc")
+            self.matrix, self.rows = self.matrix @ by_flow, by_flow.T @ self.rows
+            moved = s.elements.gap_slopes.H_r if s.elements is not None else 1.0
+            by = np.zeros((10, w.count))
+            by[2] = -(rise * whole / s.H * moved).ravel()[order]
+            contents = to_true_gap(film, Gradients(np.arange(w.count), order, by))
+            if (fills := true_fills(film)) is not None:
+                contents = join(contents, fills.weighed(whole, number))
             by_fill = contents.columns(film.grid.gap_shapes, w.count + areas) * scale
-        # at the rupture line of a mass-conserving film the content depends on position and velocity, so that its rate
-        # enters the balances
+        # the content at fixed unknowns depends on the position, at the rupture line also on the velocity, so that its
+        # rate enters the balances
         # derivatives of the balances to places and to rates, and of the contents to places and to rates
         self.by = np.stack([part[at : at + PLACES] for part in (by_motion, by_fill) for at in (0, PLACES)])
         if bore is not None:

@@ -323,10 +323,10 @@ def true_gradients(film: SolvedFilm) -> Gradients:
 
     The balance of such an area is a sum over the balances at its vertices.
     """
-    s, found = film.solver, _to_true_gap(film, film.solver.gradients())
+    s, found = film.solver, to_true_gap(film, film.solver.gradients())
     if (r := s.reservoirs) is None:
         return found
-    flows = _to_true_gap(film, s.gradients(r.at))
+    flows = to_true_gap(film, s.gradients(r.at))
     rows, entries = np.nonzero(r.within().T[:, flows.rows])
     by = flows.by[:, entries] * r.weights()[rows]
     return join(found, Gradients(s.work.count + rows, flows.places[entries], by))
@@ -335,10 +335,11 @@ def true_gradients(film: SolvedFilm) -> Gradients:
 def true_fills(film: SolvedFilm) -> Gradients | None:
     """Derivatives of the fills to the true gap, from `FilmSolver.fill_gradients`; None if there are none."""
     fills = film.solver.fill_gradients()
-    return None if fills is None else _to_true_gap(film, fills[1])
+    return None if fills is None else to_true_gap(film, fills[1])
 
 
-def _to_true_gap(film: SolvedFilm, gradients: Gradients) -> Gradients:
+def to_true_gap(film: SolvedFilm, gradients: Gradients) -> Gradients:
+    """Convert derivatives to the film's gap into derivatives to the true gap, where a limiter acts."""
     f = film.limited
     return gradients if f is None else gradients.to_true_gap(f.slope, f.bend, f.face_slope)
 
