@@ -115,10 +115,10 @@ def test_critical_mass_in_any_direction_of_the_load(make_bearing, measured, somm
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("cavity", "grid", "on_vertices", "in_cells"),
-    [(-1e6, (96, 10), 0.08, 0.01), (-1e5, (96, 10), 0.5, 0.24), (-1e5, (192, 20), 0.03, 0.02)],
+    [(-1e6, (96, 10), 0.035, 0.005), (-1e5, (96, 10), 0.09, 0.055), (-1e5, (192, 20), 0.03, 0.02)],
 )
 def test_damping_of_a_mass_conserving_film_over_the_direction(measured, cavity, grid, on_vertices, in_cells):
-    """Spread of its largest change over the load's direction against the grid, L/D 1, eccentricity ratio 0.8."""
+    """Damping at half the speed: spread over the load's direction against the grid, L/D 1, eccentricity ratio 0.8."""
     size = {"journal_radius": 0.025, "length": 0.05, "radial_clearance": 25e-6}
     film, oil = ehd.FiniteLength(n_theta=grid[0], n_z=grid[1]), ehd.Lubricant(viscosity=0.02)
     for inside, limit in ((False, on_vertices), (True, in_cells)):
@@ -130,6 +130,6 @@ def test_damping_of_a_mass_conserving_film_over_the_direction(measured, cavity, 
             angle = 2.0 * np.pi / grid[0] * k / 10 + 0.3 * (k % 2)
             turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
             at = ehd.equilibrium(bearing, speed=314.0, load=tuple(load * turn[0]))
-            found.append(turn @ at.damping @ turn.T)
+            found.append(turn @ at.dynamic_stiffness([0.5 * 314.0])[0].imag @ turn.T)
         spread = np.ptp(found, axis=0).max() / np.abs(np.mean(found, axis=0)).max()
         measured(f"line {'inside cells' if inside else 'on vertices'}", spread, limit)

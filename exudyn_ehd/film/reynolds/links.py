@@ -39,10 +39,12 @@ The fill of a vertex would carry the oil with an error of first order in the len
 the oil content along theta, most where the oil moves slowly against the cavity, as in whirl at half of the speed. So
 ``late`` also holds the rise of the fill from the vertex to the middle of the link downstream in theta, extrapolated
 from the vertex upstream (upwind differences of second order: R. F. Warming, R. M. Beam, AIAA J. 14 (1976) 1241). It is
-the rise at the start of the step, so that the equations stay linear. It is 0 beside full vertices, where a line lies
-between the vertices and fills jump. The rise is linear in the fills. With a limiter, stiffness and damping of small
-motions would differ from direction to direction. Between -0.45 late and 0.45 (1 - late) it leaves the fill of the flow
-between 0 and 1. If a step carries C times the content away, no wave grows for any C. Along z the order is the first.
+the rise at the start of the step, so that the equations stay linear. In front of a reformation line the void of the
+vertex downstream shrinks with the line's way through its cell. Below half of the vertex's own void, the rise is reduced
+in proportion, to 0 beside a full vertex. Elsewhere it is linear in the fills. With a limiter of total variation,
+stiffness and damping of small motions would differ between directions. Between -0.45 late and 0.45 (1 - late) the rise
+leaves the fill of the flow between 0 and 1. If a step carries C times the content away, no wave grows for any C. Along
+z the order is the first.
 
 The equations of a steady film contain only the fills of its flows. Those of the vertices follow from them
 (`move_upstream`), so that a run which begins with a steady film stays there. The shear in a cavity has the fills of the
@@ -288,17 +290,19 @@ def _leaves(fx, fz, i, j):
 
 @njit(cache=True, inline="always")
 def _share_of_rise(fx, fz, fill, links, i, j):
-    """Return the rise of a vertex per change of the fill from the column upstream, and that column.
+    """Return the rise of a cavitated vertex per change of the fill from the column upstream, this column, and the one
+    downstream if the rise is reduced for its void, else -1.
 
-    The rise is weighted by the part of the outflow that flows along theta. It is 0 beside full vertices, and where the
-    flows of both links differ in sign.
+    The rise is weighted by the part of the outflow that flows along theta, and 0 where the flows of both links differ
+    in sign.
     """
     last, on, goes_on = (i - 1 if i > 0 else len(fx) - 1), (i + 1 if i + 1 < len(fx) else 0), fx[i, j] > 0.0
-    before, to, away = (last, links[last], links[i]) if goes_on else (on, links[i], links[last])
-    if fx[last, j] * fx[i, j] <= 0.0 or fill[last, j] >= 1.0 or fill[on, j] >= 1.0:
-        return 0.0, before
-    outflow = fx[i, j] if goes_on else -fx[last, j]
-    return 0.5 * outflow / _leaves(fx, fz, i, j) * to / away, before
+    before, after, to, away = (last, on, links[last], links[i]) if goes_on else (on, last, links[i], links[last])
+    if fx[last, j] * fx[i, j] <= 0.0 or fill[i, j] >= 1.0:
+        return 0.0, before, -1
+    outflow, left = (fx[i, j] if goes_on else -fx[last, j]), 2.0 * (1.0 - fill[after, j]) / (1.0 - fill[i, j])
+    share = 0.5 * outflow / _leaves(fx, fz, i, j) * to / away
+    return share * min(left, 1.0), before, after if left < 1.0 else -1
 
 
 @njit(cache=True)
@@ -316,8 +320,8 @@ def outflow_of(fx, fz, H, H_t, area, links, fill):
             out[0, i, j] = own
             out[1, i, j] = H_t[i, j] / H[i, j]
             out[2, i, j] = _leaves(fx, fz, i, j) / volume if volume > 0.0 else 0.0
-            share, before = _share_of_rise(fx, fz, fill, links, i, j)
-            rise = share * (own - fill[before, j]) if own < 1.0 else 0.0
+            share, before, _ = _share_of_rise(fx, fz, fill, links, i, j)
+            rise = share * (own - fill[before, j])
             out[3, i, j] = min(max(rise, -LARGEST_LAG * own), LARGEST_LAG * (1.0 - own))
     return out
 
@@ -331,13 +335,15 @@ def move_upstream(fx, fz, links, out):
     """
     fill, rise, flows, change, goes_on = out[0], out[3], out[0].copy(), 1.0, fx[0, 0] > 0.0
     n, m = fill.shape
-    while change > TOLERANCE:
+    for _ in range(n):
+        if change <= TOLERANCE:
+            break
         change = 0.0
         for k in range(n):
             i = k if goes_on else n - 1 - k
             for j in range(m):
                 if flows[i, j] < 1.0:
-                    share, before = _share_of_rise(fx, fz, fill, links, i, j)
+                    share, before, _ = _share_of_rise(fx, fz, fill, links, i, j)
                     own = (flows[i, j] + share * fill[before, j]) / (1.0 + share)
                     if flows[i, j] - own < -LARGEST_LAG * own:
                         own = flows[i, j] / (1.0 - LARGEST_LAG)
@@ -349,15 +355,21 @@ def move_upstream(fx, fz, links, out):
 
 @njit(cache=True)
 def rise_slopes(fx, fz, fill, rise, links):
-    """Return derivatives (2, n m) of the rises to the fill upstream and to the own one, and the flat indices (n m,) of
-    the former."""
-    m, out, places = fill.shape[1], np.zeros((2, fill.size)), np.empty(fill.size, dtype=np.int64)
+    """Return derivatives (3, n m) of the rises to the fills upstream and downstream and to the own one, and the flat
+    indices (3, n m) of these fills."""
+    m, out, places = fill.shape[1], np.zeros((3, fill.size)), np.zeros((3, fill.size), dtype=np.int64)
     for c in range(fill.size):
         i, j = c // m, c % m
-        share, before = _share_of_rise(fx, fz, fill, links, i, j)
-        bound = min(rise[i, j] + LARGEST_LAG * fill[i, j], LARGEST_LAG * (1.0 - fill[i, j]) - rise[i, j]) <= TOLERANCE
-        out[0, c], out[1, c] = (0.0, -LARGEST_LAG) if bound else (-share, share)
-        places[c] = before * m + j
+        share, before, after = _share_of_rise(fx, fz, fill, links, i, j)
+        own, places[0, c], places[1, c], places[2, c] = fill[i, j], before * m + j, c, c
+        if min(rise[i, j] + LARGEST_LAG * own, LARGEST_LAG * (1.0 - own) - rise[i, j]) <= TOLERANCE:
+            out[2, c] = -LARGEST_LAG
+            continue
+        out[0, c], out[2, c] = -share, share
+        if after >= 0 and fill[after, j] < 1.0:
+            places[1, c] = after * m + j
+            out[1, c] = -rise[i, j] / (1.0 - fill[after, j])
+            out[2, c] += rise[i, j] / (1.0 - own)
     return out, places
 
 

@@ -328,8 +328,9 @@ class FilmArrays:
         """Derivative (n m, n m) of the fills of the flows to the fills of the vertices, of a steady film, and their
         differences (n, m)."""
         s, (fill, outflow), here = self.system, self._outflow(), np.arange(self.grid.area.size)
-        slopes, before = rise_slopes(s.fx, s.fz, outflow[0], outflow[3], self.grid.link_x)
-        by_fill = (slopes * (fill < 1.0).ravel()).ravel(), (np.tile(here, 2), np.append(before, here))
+        slopes, places = rise_slopes(s.fx, s.fz, outflow[0], outflow[3], self.grid.link_x)
+        cavitated = (fill < 1.0).ravel()
+        by_fill = (slopes * cavitated * cavitated[places]).ravel(), (np.tile(here, 3), places.ravel())
         return csc_matrix(by_fill, shape=(here.size, here.size)) + identity(here.size, format="csc"), outflow[3]
 
     def flooded(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -194,7 +194,8 @@ class EquilibriumResult:
         """
         nu = np.asarray(frequencies, dtype=float)
         if nu.ndim != 1 or not np.all(np.isfinite(nu)):
-            raise InputError(f"dynamic_stiffness: frequencies must be a list of finite numbers in rad/s, got {frequencies!r}.")
+            got = f"a list of finite numbers in rad/s, got {frequencies!r}"
+            raise InputError(f"dynamic_stiffness: frequencies must be {got}.")
         if self.response is None:
             return self.stiffness + 1j * nu[:, None, None] * self.damping
         return np.array([self.response.at(float(f))[:2, :2] for f in nu]).reshape(-1, 2, 2)

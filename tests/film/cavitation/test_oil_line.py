@@ -37,7 +37,8 @@ def _start(film, seed):
     film.lag(None, 0.0)
     if mass is not None and rng.random() < 0.5:
         drains = abs(known[0]) / 0.3 * rng.random(shape)
-        film.lag(np.stack((mass / film.H, film.H_t / film.H, drains)), step)
+        rises = rng.uniform(-1.0, 1.0, shape)
+        film.lag(np.stack((mass / film.H, film.H_t / film.H, drains, rises)), step)
     return (*known, mass, step)
 
 
@@ -79,7 +80,7 @@ def _off_the_curve(film, pc):
 
 
 def _check_states(count, seed, dense_matrix):
-    rng, steps = np.random.default_rng(seed), []
+    rng, steps, refused = np.random.default_rng(seed), [], 0
     pairs = list(zip(_films(LINE, SIZES), _films(LINE, SIZES), strict=True))
     for k in range(count):
         warm, cold = pairs[rng.integers(len(pairs))]
@@ -88,6 +89,10 @@ def _check_states(count, seed, dense_matrix):
         for film in (warm, cold):
             state = _start(film, same)
             status, taken = film.solve(*state)
+            if status is not Status.CONVERGED and film.lagging:  # as `FilmSolver.advance` does
+                refused += 1
+                film.lag(None, 0.0)
+                status, taken = film.solve(*state)
             assert status is Status.CONVERGED, (seed, k)
             steps.append(taken)
         pc, mass, step = state[2:]
@@ -96,6 +101,7 @@ def _check_states(count, seed, dense_matrix):
         assert np.abs(warm.pressure - cold.pressure).max() <= 1e-10 * peak, (seed, k)
         assert _unbalanced(cold, pc, mass, step, dense_matrix) < 1e-11, (seed, k)
         assert _off_the_curve(cold, pc) < 1e-9, (seed, k)
+    assert refused < 0.1 * count
     return np.mean(steps)
 
 

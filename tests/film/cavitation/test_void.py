@@ -132,8 +132,8 @@ def test_tangent_is_exact_in_a_moving_film():
 
 @pytest.mark.slow
 def test_cavities_follow_whirl():
-    """Work of the film on a journal that whirls with half the spin about an equilibrium, per turn of the whirl;
-    backward Euler is ten times as far off."""
+    """Work of the film on a journal that whirls with half the spin about an equilibrium, per turn of the whirl, over
+    the product of force and path. The work is 0.015 of it; backward Euler is four times as far off."""
     model = make(
         ehd.ElrodAdams(cavity_pressure=-1e5),
         journal_radius=0.025, length=0.025, radial_clearance=50e-6, film=ehd.FiniteLength(n_theta=48, n_z=6),
@@ -153,7 +153,7 @@ def test_cavities_follow_whirl():
         run.history = model.evaluate(whirl(0.0) * np.r_[np.ones(4), np.zeros(4), 1.0, 0.0]).history()
         forces = run.advance(8 * steps)[-2 * steps :]
         rates = np.array([whirl((6 * steps + k + 1) * h)[4:6] for k in range(2 * steps)])
-        work.append(float(np.sum(forces * rates)) * h)
-    converged = 2.0 * work[2] - work[1]
-    errors = np.abs(np.array(work) / converged - 1.0)
-    assert (errors < (0.01, 0.005, 0.0025)).all()
+        product = np.linalg.norm(forces - forces.mean(axis=0)) * np.linalg.norm(rates)
+        work.append(float(np.sum(forces * rates)) / product)
+    errors = np.abs(np.array(work) - (2.0 * work[2] - work[1]))
+    assert (errors < (6e-4, 3e-4, 1.5e-4)).all()

@@ -247,7 +247,7 @@ def test_threshold_is_where_the_returned_matrices_have_theirs(sommerfeld):
 
 def test_frequencies_are_checked():
     result = at_load(bearing(), 0.3)
-    with pytest.raises(ehd.InputError, match=r"frequencies must be finite numbers in rad/s"):
+    with pytest.raises(ehd.InputError, match=r"frequencies must be a list of finite numbers in rad/s"):
         result.dynamic_stiffness([math.nan])
     assert result.dynamic_stiffness([]).shape == (0, 2, 2)
 
