@@ -39,12 +39,12 @@ The fill of a vertex would carry the oil with an error of first order in the len
 the oil content along theta, most where the oil moves slowly against the cavity, as in whirl at half of the speed. So
 ``late`` also holds the rise of the fill from the vertex to the middle of the link downstream in theta, extrapolated
 from the vertex upstream (upwind differences of second order: R. F. Warming, R. M. Beam, AIAA J. 14 (1976) 1241). It is
-the rise at the start of the step, so that the equations stay linear. In front of a reformation line the void of the
-vertex downstream shrinks with the line's way through its cell. Below half of the vertex's own void, the rise is reduced
-in proportion, to 0 beside a full vertex. Elsewhere it is linear in the fills. With a limiter of total variation,
-stiffness and damping of small motions would differ between directions. Between -0.45 late and 0.45 (1 - late) the rise
-leaves the fill of the flow between 0 and 1. If a step carries C times the content away, no wave grows for any C. Along
-z the order is the first.
+the rise at the start of the step, so that the equations stay linear. Fills have a kink at a rupture line and jump at a
+reformation line, which crosses its cell while the void of the vertex there shrinks. Where the void on either side of a
+vertex is below half of its own, the rise is reduced in proportion, to 0 beside a full vertex. Elsewhere it is linear in
+the fills. With a limiter of total variation, stiffness and damping of small motions would differ between directions.
+Between -0.45 late and 0.45 (1 - late) the rise leaves the fill of the flow between 0 and 1. If a step carries C times
+the content away, no wave grows for any C. Along z the order is the first.
 
 The equations of a steady film contain only the fills of its flows. Those of the vertices follow from them
 (`move_upstream`), so that a run which begins with a steady film stays there. The shear in a cavity has the fills of the
@@ -290,19 +290,19 @@ def _leaves(fx, fz, i, j):
 
 @njit(cache=True, inline="always")
 def _share_of_rise(fx, fz, fill, links, i, j):
-    """Return the rise of a cavitated vertex per change of the fill from the column upstream, this column, and the one
-    downstream if the rise is reduced for its void, else -1.
+    """Return the rise of a vertex per change of the fill from the column upstream, this column, and the one whose void
+    reduces the rise, else -1.
 
-    The rise is weighted by the part of the outflow that flows along theta, and 0 where the flows of both links differ
-    in sign.
+    The rise is weighted by the part of the outflow that flows along theta. It is 0 at full vertices, and where the
+    flows of both links differ in sign.
     """
     last, on, goes_on = (i - 1 if i > 0 else len(fx) - 1), (i + 1 if i + 1 < len(fx) else 0), fx[i, j] > 0.0
-    before, after, to, away = (last, on, links[last], links[i]) if goes_on else (on, last, links[i], links[last])
+    before, to, away = (last, links[last], links[i]) if goes_on else (on, links[i], links[last])
     if fx[last, j] * fx[i, j] <= 0.0 or fill[i, j] >= 1.0:
         return 0.0, before, -1
-    outflow, left = (fx[i, j] if goes_on else -fx[last, j]), 2.0 * (1.0 - fill[after, j]) / (1.0 - fill[i, j])
-    share = 0.5 * outflow / _leaves(fx, fz, i, j) * to / away
-    return share * min(left, 1.0), before, after if left < 1.0 else -1
+    outflow, fuller = (fx[i, j] if goes_on else -fx[last, j]), (last if fill[last, j] > fill[on, j] else on)
+    share, left = 0.5 * outflow / _leaves(fx, fz, i, j) * to / away, 2.0 * (1.0 - fill[fuller, j]) / (1.0 - fill[i, j])
+    return share * min(left, 1.0), before, fuller if left < 1.0 else -1
 
 
 @njit(cache=True)
@@ -355,20 +355,20 @@ def move_upstream(fx, fz, links, out):
 
 @njit(cache=True)
 def rise_slopes(fx, fz, fill, rise, links):
-    """Return derivatives (3, n m) of the rises to the fills upstream and downstream and to the own one, and the flat
-    indices (3, n m) of these fills."""
+    """Return derivatives (3, n m) of the rises to the fills upstream, of the vertex that reduces them and to the own
+    one, and the flat indices (3, n m) of these fills."""
     m, out, places = fill.shape[1], np.zeros((3, fill.size)), np.zeros((3, fill.size), dtype=np.int64)
     for c in range(fill.size):
         i, j = c // m, c % m
-        share, before, after = _share_of_rise(fx, fz, fill, links, i, j)
+        share, before, fuller = _share_of_rise(fx, fz, fill, links, i, j)
         own, places[0, c], places[1, c], places[2, c] = fill[i, j], before * m + j, c, c
         if min(rise[i, j] + LARGEST_LAG * own, LARGEST_LAG * (1.0 - own) - rise[i, j]) <= TOLERANCE:
             out[2, c] = -LARGEST_LAG
             continue
         out[0, c], out[2, c] = -share, share
-        if after >= 0 and fill[after, j] < 1.0:
-            places[1, c] = after * m + j
-            out[1, c] = -rise[i, j] / (1.0 - fill[after, j])
+        if fuller >= 0 and fill[fuller, j] < 1.0:
+            places[1, c] = fuller * m + j
+            out[1, c] = -rise[i, j] / (1.0 - fill[fuller, j])
             out[2, c] += rise[i, j] / (1.0 - own)
     return out, places
 
