@@ -254,7 +254,7 @@ class ElrodAdams(_Ruptures):
     stiffness falls from 9 to 1.5 %, in two to three times the time. The damping at half of the speed (L/D 1,
     eccentricity ratio 0.8) has a spread over the direction of the load of 0.4 % in place of 3.3 %, with a cavity
     pressure of -10 bar. The reformation line stays on vertices. Its effect is the larger the nearer the cavity pressure
-    is to that of the ends: at -1 bar the spread is 5 % in place of 8 %, on 192 x 20 vertices 2 % in place of 3 %. There
+    is to that of the ends: at -1 bar the spread is 5 % in place of 9 %, on 192 x 20 vertices 2 % in place of 3 %. There
     a second threshold of whirl, at a third of the critical mass, exists for some directions only on the default grid.
 
     Parameters
