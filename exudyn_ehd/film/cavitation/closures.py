@@ -246,9 +246,10 @@ class ElrodAdams(_Ruptures):
     The state of the film is the void, the part of the gap without oil. Oil flows balance to round-off. The oil content
     differs from their sum by at most half of a step's change of the gap, which does not accumulate over steps.
 
-    Along theta, oil is transported with second order in space and time. In five journals under loads that turn, the
-    orbit on 96 columns is within 2 % of the film thickness of that on 384 (``tests/mechanisms/test_oil_in_time.py``),
-    with steps in which the oil passes less than a column. Longer steps are less accurate.
+    Oil content is transported with second order along theta. In five journals under loads that turn, the orbit on 96
+    columns is within 2 % of the film thickness of that on 384 (``tests/mechanisms/test_oil_in_time.py``). The error by
+    the time steps is of first order: orbits of a rotor with an unbalance are 2 % too small or large with 120 steps per
+    turn, 1 % with 240 (``tests/coupling/rotor/test_solve.py``).
 
     With ``line_in_cells=True`` (default grid, eccentricity ratio 0.6 to 0.9, L/D 0.5 and 1) the error of steady
     stiffness falls from 9 to 1.5 %, in two to three times the time. The damping at half of the speed (L/D 1,
