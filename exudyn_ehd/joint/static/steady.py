@@ -53,9 +53,9 @@ class ThrustResult:
     axial_position : float
         Position of the journal's centre along the axis, m.
     force, moment : (3,) arrays
-        Force, N, and moment about the joint's origin, Nm.
+        Force, N, and moment about the joint's origin, N m.
     axial_force, friction_torque : float
-        Force along z, N; torque about the bearing's axis, Nm.
+        Force along z, N; torque about the bearing's axis, N m.
     axial_stiffness, axial_damping : float
         -dF/dz, N/m, and -dF/dw, N s/m, with F along z and the axial speed w. Between plane faces at rest, a film that
         ruptures has a pressure on the closing side only. Midway between two equal faces the damping is that of one
@@ -212,6 +212,7 @@ class SteadyResult(FilmRecord, FilmPictures):
     friction_number : float
         f R / c with the coefficient of friction f = |friction_torque| / (R F); inf without a force.
     status, iterations : Status, int
+        Outcome of the film's solution; number of its linear solves, or of sweeps with `ClassicSOR`.
     fill : (n, m) array or None
         Film fraction; None for closures that do not conserve mass.
     temperature : (n, m) array, float or None
