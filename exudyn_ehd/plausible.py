@@ -43,8 +43,7 @@ UNITS = {
     **{"mm3/s": 1e-9, "mm3/(N m)": 1e-9, "mm2/N": 1e-6},
 }
 """SI values of units that are taken by mistake."""
-_SMALL = ("mm", "micrometres")
-_FINE = ("micrometres", "mm", "nm")
+_SMALL, _FINE = ("mm", "micrometres"), ("micrometres", "mm", "nm")
 _STRESS = ("GPa", "MPa")
 _PRESSURE = ("bar", "MPa", "GPa")
 _KELVIN = "0 degrees Celsius are 273.15 K"
@@ -320,9 +319,10 @@ def doubt(where: str, value: object, size: float) -> tuple[str, bool] | None:
     if kind is None or size == 0.0 or kind.low <= size <= kind.high:
         return None
     meant = ((u, size + 273.15 if u == "degrees Celsius" else UNITS[u] * size) for u in kind.others)
-    hint = next((f"if it is in {u}, give {n:.3g}." for u, n in meant if kind.low <= n <= kind.high), "check its unit.")
+    sign = "-" if str(value).startswith("-") else ""
+    found = (f"if it is in {u}, give {sign}{n:.3g}." for u, n in meant if kind.low <= n <= kind.high)
     usual = f"{kind.low:g} to {kind.high:g}" if kind.low else f"up to {kind.high:g}"
-    text = f"bearings have {usual} {kind.unit}; {hint}" + (f" ({kind.note})" if kind.note else "")
+    text = f"bearings have {usual} {kind.unit}; {next(found, 'check its unit.')}" + f" ({kind.note})" * bool(kind.note)
     if kind.refused_below <= size <= kind.refused_above:
         return f"{where}: {value!r} {kind.unit} is unusual, {text}", False
     limits = f"{kind.refused_below:g} and {kind.refused_above:g} {kind.unit}"

@@ -380,7 +380,7 @@ def steady(
     require_type("steady: bearing", bearing, JournalBearing)
     e = require_number("steady: eccentricity_ratio", eccentricity_ratio, at_least=0.0) * bearing.radial_clearance
     angle = require_number("steady: direction", direction, "rad")
-    b = require_vector("steady: tilt", tilt, 2, "rad")
+    b = require_vector("steady: tilt", tilt, 2, "rad (slopes bx and by)")
     v = require_vector("steady: velocity", velocity, 2, "m/s")
     omega = require_number("steady: speed", speed, "rad/s")
     w = require_number("steady: axial_speed", axial_speed, "m/s")
