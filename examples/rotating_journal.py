@@ -4,11 +4,12 @@ The second case of P. Flores, "Modeling, Analysis and Simulation of 3D Elastohyd
 Systems".
 
 Length 66 mm, clearance 30 um, eccentricity 24 um, 3000 rpm, 9 mPa s, bush 20 mm thick with its outer surface fixed; E =
-2.1e12 Pa as printed there, which is ten times steel, and steel, aluminium and a polymer. The paper leaves out the
-journal's radius; 30 mm assumed. Cavitation by Gümbel as in the paper and, next to it, mass conserving with a cavity 1
-bar below the ends.
+2.1e12 Pa as printed there, which is ten times steel, and steel, aluminium and a polymer. The paper omits the
+journal's radius; 30 mm is assumed. Cavitation by Gümbel as in the paper and, next to it, mass conserving with a cavity
+1 bar below the ends.
 
-The flexible bore widens the film and lowers the peak; the film gets thicker.
+The flexible bore widens the film and lowers the peak; the film gets thicker. A liner does not deflect at its ends: for
+tilted journals on soft liners `GridWarning` says that the grid is too coarse for the film at the edge.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from exudyn_ehd.pictures.style import styled
 SPEED = 3000 * 2 * np.pi / 60
 CLEARANCE, ECCENTRICITY = 30e-6, 24e-6
 TILT = 1e-4
-MODULI = {"E = 2.1e12 (paper)": 2.1e12, "steel": 2.1e11, "aluminium": 7e10, "polymer": 3e9}
+MODULI = {"E = 2.1e12 Pa (paper)": 2.1e12, "steel": 2.1e11, "aluminium": 7e10, "polymer": 3e9}
 KINDS = {"liner": ehd.ElasticLiner, "modal": ehd.ModalBush, "nodal": ehd.ANCFBush}
 CLOSURES = {"Gümbel": ehd.Gumbel(), "mass conserving": ehd.ElrodAdams(cavity_pressure=-1e5)}
 
