@@ -247,10 +247,11 @@ class ElrodAdams(_Ruptures):
     differs from their sum by at most half of a step's change of the gap, which does not accumulate over steps.
 
     With ``line_in_cells=True`` (default grid, eccentricity ratio 0.6 to 0.9, L/D 0.5 and 1) the error of steady
-    stiffness falls from 9 to 1.5 %, in two to three times the time. The spread of damping over the direction of the
-    load falls from 8 to 1 % with a cavity pressure of -10 bar. The reformation line stays on vertices. Its effect is
-    the larger the nearer the cavity pressure is to that of the ends: at -1 bar the spread of damping falls from 49 to
-    23 %, and that of stiffness from 9 to 4 %; on 192 x 20 vertices that of damping falls from 3 to 2 %.
+    stiffness falls from 9 to 1.5 %, in two to three times the time. Damping depends on the direction of the load, by
+    the grid alone: this spread falls from 8 to 1 % with a cavity pressure of -10 bar. The reformation line stays on
+    vertices. Its effect is the larger the nearer the cavity pressure is to that of the ends: at -1 bar the spread of
+    damping falls from 49 to 23 %, and that of stiffness from 9 to 4 %; on 192 x 20 vertices that of damping falls from
+    3 to 2 %.
 
     Parameters
     ----------
