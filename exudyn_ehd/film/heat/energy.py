@@ -198,7 +198,8 @@ def pass_on(x, couette, found, edges, spin):
         for i in range(first, last, way):
             link, j = (i if way > 0 else i - 1), i + way
             flow = way * x[link]
-            cut = flow - np.minimum(np.maximum(flow - found[i], 0.0), np.maximum(flow, way * couette[link]))
+            least, most = np.minimum(flow, 0.0), np.maximum(flow, way * couette[link])
+            cut = flow - np.minimum(np.maximum(flow - found[i], least), most)
             x[link] -= way * cut
             found[i] -= cut
             (less if j == last else found)[j] += cut
