@@ -89,6 +89,10 @@ class Arc(Checked):
     Oil between two arcs is well mixed: what enters an arc has the temperature of a supply groove with hot oil carried
     over, see `FilmEnergy`.
 
+    Where the pressures of an edge and an end differ by dp, the pressure jumps at their corner, and the flow around the
+    corner grows with the logarithm of the grid: every halving of the intervals adds ``(2 ln 2 / pi) h^3 dp / (12 mu)``
+    to the leakage, for each corner with its gap h. In thin films this is little; where it is much, compare grids.
+
     Parameters
     ----------
     start : float

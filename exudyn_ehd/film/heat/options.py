@@ -258,7 +258,7 @@ class FilmEnergy(Checked):
     Pinkus, J. Tribology 108 (1986) 231). To flush or cool a groove, lower ``carry_over``. In films without axial flow,
     oil that pressure drives into an area leaves the bearing, and oil from an area is fresh. Cavitation models that do
     not conserve mass lose oil at the rupture line and find it again where the film begins: there it returns fully
-    mixed, with the leakage replaced by supply oil.
+    mixed, with the leakage replaced by supply oil. On an arc the cavity passes its oil on to the groove behind the arc.
 
     In time: backward differences of second order over the accepted steps; the first step, and steps more than 2.4 times
     as long as the one before, backward Euler. Viscosity and heat of a step use the temperatures that are extrapolated
