@@ -4,10 +4,11 @@ A steel journal of 80 mm diameter starts at 3000 rpm in a bearing of 40 mm lengt
 degrees Celsius; shaft and housing (a heavy steel ring) are at 20 degrees. The film heats both of them, and each expands
 with the mean temperature of its section: the solid journal soon, the ring much later.
 
-1. With 50 um of radial clearance the journal's expansion takes a fifth of it within a minute or two; then the ring
+1. With 50 um of radial clearance the journal's expansion takes a sixth of it within a minute or two; then the ring
    expands too.
 2. With 20 um `equilibrium` finds a steady film of 15 um with all parts warm. The cold start never gets there: the
-   clearance closes, the thinner film heats more, and after 80 s the bearing seizes.
+   clearance closes, the thinner film heats more, and after 80 s the bearing seizes. That ends the run: Exudyn prints
+   DYNAMIC SOLVER FAILED.
 
 Run ``python examples/cold_start.py``; a picture is written to ``results/cold_start``.
 """
@@ -132,9 +133,7 @@ def draw(runs: dict[float, ehd.LubricatedJoint], folder: pathlib.Path) -> None:
         history, name = joint.history.between(1.0), f"{1e6 * clearance:g} µm cold"
         axes[1].plot(history.time, 1e6 * history.clearance, color=colour, label=f"clearance, {name}")
         axes[1].plot(history.time, 1e6 * history.minimum_gap, "--", color=colour, label="minimum film thickness")
-    axes[1].set(
-        xlabel="time [s]", ylabel="clearance and film [µm]", title="what the journal's growth leaves", ylim=(0, 66)
-    )
+    axes[1].set(xlabel="time [s]", ylabel="thickness [µm]", title="clearance and minimum film thickness", ylim=(0, 66))
     film = runs[WIDE].film()
     angle, middle = np.degrees(film.theta), film.z.size // 2
     axes[2].plot(angle, film.temperature[:, middle] - ZERO, color="tab:red", label="film, mid-plane")

@@ -160,8 +160,8 @@ def draw(cases: dict, path: Path) -> None:
     for a, label in zip(axes[0], ("minimum film thickness [µm]", "peak pressure [MPa]"), strict=True):
         a.set(xlabel="crank angle [°]", ylabel=label, xlim=(angle[0], angle[-1]))
         a.set_xticks(np.arange(180.0, angle[-1] + 1.0, 90.0))
-    axes[1, 0].set(xlabel="along the pin [mm]", ylabel="film thickness [µm]", title="thinnest film, along the pin")
-    axes[1, 1].set(xlabel="around the pin, in the rod [°]", ylabel="film thickness [µm]", title="and around it")
+    axes[1, 0].set(xlabel="along the pin [mm]", ylabel="film thickness [µm]", title="thinnest film along the pin")
+    axes[1, 1].set(xlabel="angle in the rod [°]", ylabel="film thickness [µm]", title="thinnest film around the pin")
     axes[1, 1].set_xticks(np.arange(0.0, 361.0, 90.0))
     for a in axes.flat:
         a.set_ylim(0.0)

@@ -21,7 +21,7 @@ little, a simply supported beam under uniform load by 8 / (5 n^2), a tension is 
 needs fewer elements, with more coordinates each; the strains of its solid's cross section stiffen it in bending
 (Poisson locking), which section stiffnesses do not.
 
-After three turns the orbits of the pins repeat within a hundredth of the clearance; otherwise the example raises an
+After four turns the orbits of the pins repeat within a hundredth of the clearance; otherwise the example raises an
 error.
 
 Run ``python examples/elastic_slider_crank.py``; pictures are written to ``results/elastic_slider_crank``.
@@ -69,7 +69,7 @@ class Run:
     ``angle`` crank angle (rad); ``slider``, ``velocity``, ``acceleration`` (m, m/s, m/s2); ``deflection`` of the rod's
     middle from the chord between its ends and ``stretch`` of that chord (m), zero for the rigid rod; ``histories`` of
     the joints, crank pin first; ``closed`` how far their last turn is from the one before and from the limit, over the
-    clearance, nan for less than three turns and for ideal joints.
+    clearance, nan for less than four turns and for ideal joints.
     """
 
     angle: np.ndarray
@@ -196,9 +196,9 @@ class Mechanism:
         return self._marker(beams[0], -length / 2), self._marker(beams[-1], length / 2)
 
     def run(self, *, turns: float, steps_per_turn: int) -> Run:
-        """Integrate over a number of crank turns; from three on the orbits of the pins must have closed by then."""
+        """Integrate over a number of crank turns; from four on the orbits of the pins must have closed by then."""
         period = 2.0 * math.pi / SPEED
-        closes = bool(self.joints) and turns >= 3.0
+        closes = bool(self.joints) and turns >= 4.0
         settings = exu.SimulationSettings()
         settings.timeIntegration.endTime = turns * period
         settings.timeIntegration.numberOfSteps = steps = round(turns * steps_per_turn)
@@ -425,11 +425,11 @@ def main(
     Parameters
     ----------
     quick : bool
-        One turn after half a turn of start-up in place of two after one, coarser steps, film and rod.
+        One turn after half a turn of start-up in place of two after two, coarser steps, film and rod.
     output : path or None
         Folder for the picture; None writes none.
     """
-    start_up, turns, steps_per_turn, elements = (0.5, 1.5, 360, 4) if quick else (1.0, 3.0, 720, 8)
+    start_up, turns, steps_per_turn, elements = (0.5, 1.5, 360, 4) if quick else (2.0, 4.0, 720, 8)
     bearing = dataclasses.replace(BEARING, film=ehd.FiniteLength(n_theta=64, n_z=6)) if quick else BEARING
     print(f"elastic slider-crank, {turns:g} turns at 5000 rpm, {steps_per_turn} steps per turn")
     print("  compiling the film's kernels (some seconds the first time, then read from the cache) ...", flush=True)

@@ -190,7 +190,7 @@ def draw(cases: dict, path: Path) -> None:
     for key, label in (("f", "minimum film thickness [µm]"), ("p", "peak pressure [MPa]")):
         axes[key].set(xlabel="turns of the shaft", ylabel=label, xlim=(turn[0], turn[-1]))
     axes["f"].legend()
-    axes["o"].set(title="path of the frame in the clearance", xlabel="x / c", ylabel="y / c", aspect="equal")
+    axes["o"].set(title="path of the shaft in the clearance", xlabel="x / c [-]", ylabel="y / c [-]", aspect="equal")
     angle = np.linspace(0.0, 2.0 * math.pi, 181)
     for name, oval in OVAL.items():
         hole = 1e3 * (HOLE + oval * np.cos(2.0 * angle))

@@ -4,7 +4,7 @@ The first case of P. Flores, "Modeling, Analysis and Simulation of 3D Elastohydr
 Systems".
 
 Inner radius 0.225 m, length 0.2 m, thickness 0.05 m, E = 1e6 Pa, line load 1000 t N/m, step 1e-3 s, 1 s. The paper
-leaves out density, Poisson ratio, supports and direction; assumed here: 7800 kg/m^3, 0.3, the lowest outer generatrix
+omits density, Poisson ratio, supports and direction; assumed here: 7800 kg/m^3, 0.3, the lowest outer generatrix
 fixed in x, y and z, the top outer generatrix guided in x (one fixed line alone leaves a rotation free), no gravity, a
 dead load on the top outer generatrix pointing down (-y). The bush axis is z.
 
@@ -168,12 +168,12 @@ def _draw_load(axes: Axes, mesh: BushMesh, u: np.ndarray, share: float) -> None:
     low, top = (mesh.generatrix(mesh.outer, angle).nodes for angle in (-np.pi / 2, np.pi / 2))
     x, y, z = (mesh.nodes + u)[top].T
     length = 0.16 * share
-    # the picture's axes are z, x, y
-    axes.quiver(z, x, y + length, 0, 0, -length, color="tab:red", lw=1.0, arrow_length_ratio=0.25, zorder=3)
+    # the picture's axes are x, -z, y
+    axes.quiver(x, -z, y + length, 0, 0, -length, color="tab:red", lw=1.0, arrow_length_ratio=0.25, zorder=3)
     x, y, z = mesh.nodes[low].T
-    axes.plot(z, x, y - 0.012, "^", color="black", ms=5, zorder=0)
-    corner = np.array([0.14, -0.36, -0.275])
-    for name, direction in (("z", [1, 0, 0]), ("x", [0, 1, 0]), ("y", [0, 0, 1])):
+    axes.plot(x, -z, y - 0.012, "^", color="black", ms=5, zorder=0)
+    corner = np.array([-0.36, -0.14, -0.275])
+    for name, direction in (("x", [1, 0, 0]), ("z", [0, -1, 0]), ("y", [0, 0, 1])):
         arrow = 0.1 * np.array(direction)
         axes.quiver(*corner, *arrow, color="black", lw=0.8, arrow_length_ratio=0.2).set_clip_on(False)
         axes.text(*(corner + 1.3 * arrow), name, ha="center", va="center")

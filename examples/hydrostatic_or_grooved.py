@@ -8,6 +8,7 @@ Swift-Stieber's (pressure and slope vanish at the rupture line) and Elrod and Ad
    finite-volume code on the same case, which shears the oil in the groove as on a land.
 2. Where should the groove be? The load of 3 kN is fixed, the groove's angle varies. Only the mass-conserving film
    balances inflow and outflow, so only it shows that a groove under the load starves the film until it can't carry.
+   Next to these angles `GridWarning` tells that the few micrometres left have a peak too narrow for the grid.
 3. What happens when the load sweeps over the groove? The journal turns at 3000 rpm, the load of 2 kN at a tenth of
    that speed. The run begins half a turn of the load before the turn that is shown.
 

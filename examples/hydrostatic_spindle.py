@@ -89,10 +89,13 @@ def draw(sizes, centred, loads, states, runs, folder: pathlib.Path) -> None:
         h = runs[kind]
         for pressure, line in ((h.highest_pocket_pressure, "-"), (h.lowest_pocket_pressure, "--")):
             axes[2].semilogx(1e3 * h.time[1:], 1e-6 * pressure[1:], line, color=colour)
-    axes[0].set(xlabel="pressure ratio p / p_s", ylabel="stiffness [N/µm]", title="centred, at rest", xlim=(0, 1))
-    axes[1].set(xlabel="load [kN]", ylabel="eccentricity ratio", title="3000 rpm")
-    title = f"{CUTTING / 1e3:g} kN at once: highest (-) and lowest (--)"
+    for name, line in (("highest", "-"), ("lowest", "--")):
+        axes[2].plot([], [], line, color="black", label=f"{name} of the four")
+    axes[0].set(xlabel="pressure ratio p / p_s [-]", ylabel="stiffness [N/µm]", title="centred, at rest", xlim=(0, 1))
+    axes[1].set(xlabel="load [kN]", ylabel="eccentricity ratio [-]", title="3000 rpm")
+    title = f"cutting force of {CUTTING / 1e3:g} kN from t = 0 on"
     axes[2].set(xlabel="time [ms]", ylabel="pocket pressure [MPa]", title=title)
+    axes[2].legend(loc="lower center")
     for ax in axes:
         ax.set_ylim(bottom=0.0)
         ax.grid(alpha=0.3)

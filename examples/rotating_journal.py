@@ -4,11 +4,12 @@ The second case of P. Flores, "Modeling, Analysis and Simulation of 3D Elastohyd
 Systems".
 
 Length 66 mm, clearance 30 um, eccentricity 24 um, 3000 rpm, 9 mPa s, bush 20 mm thick with its outer surface fixed; E =
-2.1e12 Pa as printed there, which is ten times steel, and steel, aluminium and a polymer. The paper leaves out the
-journal's radius; 30 mm assumed. Cavitation by Gümbel as in the paper and, next to it, mass conserving with a cavity 1
-bar below the ends.
+2.1e12 Pa as printed there, which is ten times steel, and steel, aluminium and a polymer. The paper omits the
+journal's radius; 30 mm is assumed. Cavitation by Gümbel as in the paper and, next to it, mass conserving with a cavity
+1 bar below the ends.
 
-The flexible bore widens the film and lowers the peak; the film gets thicker.
+The flexible bore widens the film and lowers the peak; the film gets thicker. A liner does not deflect at its ends: for
+tilted journals on soft liners the film at the edge is too thin for the grid, which is the same for all bushes.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import time
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -30,7 +32,7 @@ from exudyn_ehd.pictures.style import styled
 SPEED = 3000 * 2 * np.pi / 60
 CLEARANCE, ECCENTRICITY = 30e-6, 24e-6
 TILT = 1e-4
-MODULI = {"E = 2.1e12 (paper)": 2.1e12, "steel": 2.1e11, "aluminium": 7e10, "polymer": 3e9}
+MODULI = {"E = 2.1e12 Pa (paper)": 2.1e12, "steel": 2.1e11, "aluminium": 7e10, "polymer": 3e9}
 KINDS = {"liner": ehd.ElasticLiner, "modal": ehd.ModalBush, "nodal": ehd.ANCFBush}
 CLOSURES = {"Gümbel": ehd.Gumbel(), "mass conserving": ehd.ElrodAdams(cavity_pressure=-1e5)}
 
@@ -50,9 +52,13 @@ def bush(
 def solve(bearing: ehd.JournalBearing, tilt: float) -> dict:
     """Solve one case; the journal sinks along -y, theta counts from x."""
     start = time.perf_counter()
-    film = ehd.steady(
-        bearing, speed=SPEED, eccentricity_ratio=ECCENTRICITY / CLEARANCE, direction=-np.pi / 2, tilt=(0.0, tilt)
-    )
+    with warnings.catch_warnings():
+        # a liner does not deflect at its ends, where the film of a tilted journal is then too thin for the grid
+        if isinstance(bearing.bush, ehd.ElasticLiner):
+            warnings.simplefilter("ignore", ehd.GridWarning)
+        film = ehd.steady(
+            bearing, speed=SPEED, eccentricity_ratio=ECCENTRICITY / CLEARANCE, direction=-np.pi / 2, tilt=(0.0, tilt)
+        )
     middle = film.z.size // 2
     return {
         "film": film,

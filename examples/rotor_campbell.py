@@ -230,7 +230,7 @@ def draw(rotor, result, response, table, runs: dict[float, float], folder: pathl
     upper = figure.axes[0]
     with styled():
         upper.plot(
-            np.array(list(runs)) / RPM, 1e6 * np.array(list(runs.values())), "o", color="black", label="... in time"
+            np.array(list(runs)) / RPM, 1e6 * np.array(list(runs.values())), "o", color="black", label="run in time"
         )
         upper.set(yscale="log", ylim=(1e-2, 1e3))
         upper.legend(loc="upper right", ncols=2)

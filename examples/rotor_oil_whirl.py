@@ -14,7 +14,7 @@ Three things are compared.
   part changes sign, whirl begins. Next to it the textbook's rotor of one mass on a massless shaft, for which the
   threshold needs only the critical mass and whirl ratio that `equilibrium` reports: journals' mass + disc's mass / (1 -
   (nu / omega_n)^2) = critical mass (J. W. Lund, J. Tribology 109 (1987) 37, with the shaft in series).
-* Free vibration in time, started in the whirling mode at two speeds about the threshold: growth and frequency against
+* Free vibration in time, started in the whirling mode at six speeds about the threshold: growth and frequency against
   the eigenvalue.
 * The run-up. A light tap on the disc every 0.2 s is what an instability can grow from. Beyond the threshold a whirl
   grows, first at the eigenvalue's frequency; when it fills the clearance it jumps to half the spin, the mean speed of
@@ -25,8 +25,8 @@ Three things are compared.
   bearing rubs.
 
 K and C belong to small motions: the frequency of the limit cycle is not the eigenvalue's, and only the nonlinear film
-gives it. Gyroscopic moments are left out of the linear theory, since the disc in the middle does not tilt in the first
-mode, and so is what little moment the bushes transmit.
+gives it. The linear theory omits gyroscopic moments, since the disc in the middle does not tilt in the first mode, and
+the small moment that the bushes transmit.
 
 Run ``python examples/rotor_oil_whirl.py``; pictures are written to ``results/rotor_oil_whirl``.
 """
@@ -435,7 +435,7 @@ def _draw_waterfall(water, ride: RunUp, threshold: float, bending: float) -> Non
         ylabel="spin [Hz]",
         xlim=(20, ride.frequency[-1]),
         ylim=(ends[0] - 1.0, ends[1] + 12.0),
-        title=f"forward motion of the left journal\n(0.5 c = {height * 0.5 * CLEARANCE:.1f} Hz high)",
+        title=f"forward motion of the left journal\n(an amplitude of c / 2 is {height * 0.5 * CLEARANCE:.1f} Hz high)",
     )
     water.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2, frameon=False)
 

@@ -102,18 +102,25 @@ def draw(runs: dict, rest: ehd.TiltingPadResult, threshold: float, folder: pathl
         axes[0].plot(1e3 * pivot.real, 1e3 * pivot.imag, "k^", ms=6)
         high = (0.03 - 0.008 * film.pressure[:, FILM.n_z // 2] / rest.peak_pressure) * around
         axes[0].fill(*(1e3 * np.r_[inner, high[::-1]].view(float).reshape(-1, 2).T), color="tab:blue", alpha=0.5)
-    axes[0].set(aspect="equal", title=f"pads and pressures, {LAST:g} rpm\n(tilts x 100)", xlabel="mm", ylabel="mm")
+    axes[0].set(aspect="equal", title=f"pads at {LAST:g} rpm, tilts x 100", xlabel="x [mm]", ylabel="y [mm]")
     for name, (time, place, _) in runs.items():
         axes[1].plot(*amplitude(time, place), color=COLOURS[name], label=name)
         axes[2].plot(*spectrum(time, place), color=COLOURS[name])
         late = place[15 * place.size // 16 :] / CLEARANCE
         axes[3].plot(late.real, late.imag, color=COLOURS[name], lw=0.8)
     axes[1].axvline(threshold, color="0.4", ls="--", label="threshold of the plain bearing")
-    axes[1].set(xlabel="speed [rpm]", ylabel="amplitude / clearance", title="run-up", ylim=(0, 1))
+    axes[1].set(xlabel="speed [rpm]", ylabel="amplitude / clearance [-]", title="run-up", ylim=(0, 1))
     axes[1].legend(loc="upper left")
-    axes[2].set(xlabel="frequency / spin", ylabel="amplitude / clearance", title="at the end", xlim=(-0.5, 1.5))
+    axes[2].set(
+        xlabel="frequency / spin [-]",
+        ylabel="amplitude / clearance [-]",
+        title="spectra at the end",
+        xlim=(-0.5, 1.5),
+    )
     axes[3].add_patch(plt.Circle((0.0, 0.0), 1.0, fill=False, ec="0.4"))
-    axes[3].set(xlabel="x / clearance", ylabel="y / clearance", aspect="equal", title="last orbits")
+    ticks = np.linspace(-1.0, 1.0, 5)
+    axes[3].set(xlabel="x / clearance [-]", ylabel="y / clearance [-]", aspect="equal", title="last orbits")
+    axes[3].set(xticks=ticks, yticks=ticks)
     fig.savefig(folder / "tilting_pads.png", dpi=85)
     plt.close(fig)
 

@@ -130,7 +130,7 @@ def draw(
         dashed = "--" if name == "Hirs" else "-"
         axes[2].semilogy(turns, distance(name, runs[name]), dashed, lw=1.2, **style)
     axes[0].set(xlabel="speed [rpm]", ylabel="minimum film thickness [µm]", title="4 kN on water", ylim=(0, None))
-    axes[1].set(xlabel="speed [rpm]", ylabel="power loss [kW]", title="what the film takes", ylim=(0, None))
+    axes[1].set(xlabel="speed [rpm]", ylabel="power loss [kW]", title="power lost in the film", ylim=(0, None))
     axes[2].set(
         xlabel="turns of the rotor",
         ylabel="distance from equilibrium / clearance",

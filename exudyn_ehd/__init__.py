@@ -27,8 +27,8 @@ SI units, radians, gauge pressures. Joint frame: origin on the bearing's mid-pla
 the housing; theta counts from x about z; arrays are ``[theta, z]``, z from -L/2 to L/2. Forces act on the journal,
 moments are taken about the joint's origin.
 
-What describes a scene raises `InputError` for values that can't be meant, and says which. Equations, assumptions and
-sources of an effect stand in full at the top of its module, e.g. ``help("exudyn_ehd.film.surfaces.roughness")``.
+Descriptions of a model raise `InputError` for invalid values and name the argument. The docstring of each effect's
+module has the equations, assumptions and sources, e.g. ``help("exudyn_ehd.film.surfaces.roughness")``.
 
 Examples in docstrings take ``import numpy as np``, ``import exudyn as exu`` and ``import exudyn_ehd as ehd`` for
 granted, and go on from the examples that they name.

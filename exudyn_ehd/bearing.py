@@ -124,7 +124,7 @@ class JournalBearing(Checked):
         Seals between the film and ``end_pressures``: one for both ends, or those at z = -L/2 and z = +L/2, None for an
         open end. None: open ends.
     squeeze : bool, default True
-        False leaves the squeeze term out (quasi-static film: no damping).
+        False omits the squeeze term (quasi-static film without damping).
     contact : RegularisedWall or None, default None
         Smooth wall that carries load before the gap vanishes; not with ``asperity`` or ``roughness``. None: a
         vanishing gap ends the run with an error, unless there is an ``asperity``.
@@ -156,7 +156,7 @@ class JournalBearing(Checked):
     Raises
     ------
     InputError
-        For values that can't be meant.
+        For values of a wrong type or outside their ranges, and for options that exclude each other.
 
     Examples
     --------
@@ -225,7 +225,7 @@ class JournalBearing(Checked):
             )
         for profile in self.profiles:
             require_type("JournalBearing.profile", profile, *get_args(SurfaceProfile))
-        ends = require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
+        ends = require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa (at z = -L/2 and +L/2)")
         # a list or an array compares and hashes like the pair that it is
         object.__setattr__(self, "end_pressures", tuple(ends.tolist()))
         require_seals(self.end_seals)
@@ -391,7 +391,7 @@ class JournalBearing(Checked):
 
 
 def _check_elastic(bearing: JournalBearing) -> None:
-    """Refuse what is no bush or journal, or one whose surface is not the film's."""
+    """Raise `InputError` for objects that are no bush or journal, or whose surface does not fit the film."""
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, require_bore
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore

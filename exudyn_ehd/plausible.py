@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 
 class Kind(NamedTuple):
-    """A physical quantity: its unit, what is plausible, and what is refused.
+    """A physical quantity: its unit, the plausible sizes, and those beyond which it raises `InputError`.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ class Kind(NamedTuple):
     refused_below, low, high, refused_above : float
         Sizes in that unit; between ``low`` and ``high`` nothing is said.
     others : tuple of str
-        Units of `UNITS` that are taken by mistake, the likeliest first.
+        Units of `UNITS`, or degrees Celsius, that are taken by mistake, the likeliest first.
     note : str
         A last sentence for the message.
     """
@@ -43,8 +43,7 @@ UNITS = {
     **{"mm3/s": 1e-9, "mm3/(N m)": 1e-9, "mm2/N": 1e-6},
 }
 """SI values of units that are taken by mistake."""
-_SMALL = ("mm", "micrometres")
-_FINE = ("micrometres", "mm", "nm")
+_SMALL, _FINE = ("mm", "micrometres"), ("micrometres", "mm", "nm")
 _STRESS = ("GPa", "MPa")
 _PRESSURE = ("bar", "MPa", "GPa")
 _KELVIN = "0 degrees Celsius are 273.15 K"
@@ -73,8 +72,8 @@ KINDS: dict[str, Kind] = {
     "density": Kind("kg/m3", 15.0, 300.0, 2.5e4, 1e9, ("g/cm3", "t/mm3")),
     "specific heat": Kind("J/(kg K)", 50.0, 500.0, 1e4, 1e5, ("kJ/(kg K)",)),
     "specific heat of a solid": Kind("J/(kg K)", 20.0, 100.0, 3000.0, 1e5, ("kJ/(kg K)",)),
-    "temperature": Kind("K", 1.0, 200.0, 700.0, 3000.0, note=_KELVIN),
-    "oil temperature": Kind("K", 180.0, 210.0, 600.0, 1000.0, note=_KELVIN),
+    "temperature": Kind("K", 1.0, 200.0, 700.0, 3000.0, ("degrees Celsius",), _KELVIN),
+    "oil temperature": Kind("K", 180.0, 210.0, 600.0, 1000.0, ("degrees Celsius",), _KELVIN),
     "pressure": Kind("Pa", 0.0, 50.0, 2e8, 5e9, _PRESSURE, "it is a gauge pressure"),
     "cavity pressure": Kind("Pa", 0.0, 50.0, 1e7, 1e10, _PRESSURE, "it is a gauge pressure, vacuum is -1e5"),
     "stress": Kind("Pa", 0.0, 50.0, 1e10, 1e13, ("MPa", "bar", "GPa")),
@@ -85,7 +84,7 @@ KINDS: dict[str, Kind] = {
     "law's pressure": Kind("Pa", 1e5, 1e7, 1e10, 1e12, _STRESS),
     "temperature coefficient": Kind("1/K", 0.0, 1e-5, 0.2, 2.0),
     "expansion": Kind("1/K", 0.0, 0.0, 1e-3, 0.1),
-    "pole": Kind("K", 0.0, 0.0, 300.0, 500.0, note=_KELVIN),
+    "pole": Kind("K", 0.0, 0.0, 300.0, 500.0, ("degrees Celsius",), _KELVIN),
     "relaxation time": Kind("s", 1e-18, 1e-11, 0.1, 1e5, ("microseconds",)),
     "volume": Kind("m3", 0.0, 1e-12, 1.0, 100.0, ("cm3", "mm3", "l")),
     "flow": Kind("m3/s", 0.0, 0.0, 0.1, 100.0, ("l/min", "mm3/s")),
@@ -319,10 +318,11 @@ def doubt(where: str, value: object, size: float) -> tuple[str, bool] | None:
     kind = kind_of(where)
     if kind is None or size == 0.0 or kind.low <= size <= kind.high:
         return None
-    meant = ((unit, UNITS[unit] * size) for unit in kind.others if kind.low <= UNITS[unit] * size <= kind.high)
-    advice = next((f"if it is in {unit}, give {number:.3g}." for unit, number in meant), "check its unit.")
+    meant = ((u, size + 273.15 if u == "degrees Celsius" else UNITS[u] * size) for u in kind.others)
+    sign = "-" if str(value).startswith("-") else ""
+    found = (f"if it is in {u}, give {sign}{n:.3g}." for u, n in meant if kind.low <= n <= kind.high)
     usual = f"{kind.low:g} to {kind.high:g}" if kind.low else f"up to {kind.high:g}"
-    text = f"bearings have {usual} {kind.unit}; {advice}" + (f" ({kind.note})" if kind.note else "")
+    text = f"bearings have {usual} {kind.unit}; {next(found, 'check its unit.')}" + f" ({kind.note})" * bool(kind.note)
     if kind.refused_below <= size <= kind.refused_above:
         return f"{where}: {value!r} {kind.unit} is unusual, {text}", False
     limits = f"{kind.refused_below:g} and {kind.refused_above:g} {kind.unit}"

@@ -62,8 +62,9 @@ _ADVICE = {
     Status.CONVERGED: "the film was evaluated.",
     Status.NOT_CONVERGED: "the cavitation model did not converge; refine the film grid (FiniteLength) or reduce the "
     "step size, and please report the state.",
-    Status.NO_FILM: "the gap closed somewhere, where a film has no solution; give the bearing a contact effect, "
-    "contact=RegularisedWall(onset=...), reduce the load or the step size, or check the radial clearance.",
+    Status.NO_FILM: "the gap closed somewhere, where a film has no solution; give the bearing a contact, "
+    "contact=RegularisedWall(onset=...), reduce the load, the eccentricity or the step size, or check the radial "
+    "clearance.",
     Status.NO_PRESSURE: "the pressure runs away: with this viscosity-pressure law no finite pressure carries the film; "
     "name an elastic liner or bush, which spreads the load, or reduce the load.",
     Status.OUTSIDE_MAP: "the journal left the domain of its impedance map; give ImpedanceMap a larger "
@@ -93,7 +94,7 @@ class EHDError(Exception):
 
 
 class InputError(EHDError, ValueError):
-    """An argument has a value that can't be meant; raised before anything runs, with the allowed range.
+    """An argument has an invalid value; raised before anything runs, with the allowed range.
 
     Examples
     --------
@@ -379,32 +380,45 @@ def hint_arguments(item: Hinted) -> Hinted:
 
     @functools.wraps(own)
     def init(self: object, *args: object, **given: object) -> None:
+        if args and dataclasses.fields(item)[0].kw_only:
+            raise InputError(
+                f"{item.__name__} takes its arguments by name, {names[0]}=..., got {args[0]!r} without one."
+            )
         for name in given.keys() - names:
             require_supported(f"{item.__name__}.{name}")
             meant = did_you_mean(name, names)
-            about = re.search(rf"\n +{meant} : .*\n +([^.]*)\.", item.__doc__ or "") if meant else None
-            meaning = f" ({' '.join(about[1].split())})" if about else ""
-            hint = f"; did you mean {meant}{meaning}?" if meant else "."
-            raise InputError(f"{item.__name__} has no argument {name!r}{hint} It takes {', '.join(names)}.")
+            about = re.search(rf"\n +{meant or '-'} : .*\n +([^.]*)\.", item.__doc__ or "")
+            raise InputError(
+                f"{item.__name__} has no argument {name!r}"
+                + (f"; did you mean {meant}" if meant else "")
+                + (f" ({' '.join(about[1].split())})" if about else "")
+                + ("? " if meant else ". ")
+                + f"It takes {', '.join(names)}."
+            )
         own(self, *args, **given)
 
     item.__init__ = init  # type: ignore[method-assign]
     return item
 
 
-def require_type(
-    where: str, value: object, *types: type, hint: str = "options are objects, not strings or classes."
-) -> None:
+def require_type(where: str, value: object, *types: type, hint: str = "") -> None:
     """Raise `InputError` for an object of none of these types, and for a class.
 
-    ``type(None)`` stands for None. An object is of a protocol if it has all of its attributes.
+    ``type(None)`` stands for None. An object is of a protocol if it has all of its attributes. Without a ``hint`` the
+    message says that options are objects, or that an object of this package is of another kind.
     """
     if isinstance(value, type) or not isinstance(value, types):
-        called = {True: "a {} of your own", False: "{}(...)"}
+        called, own = {True: "a {} of your own", False: "{}(...)"}, type(value).__module__.startswith("exudyn_ehd.")
         names = " or ".join(
             "None" if t is type(None) else called[getattr(t, "_is_protocol", False)].format(t.__name__) for t in types
         )
-        raise InputError(f"{where} must be {names}, got {value!r}; {hint}")
+        raise InputError(
+            f"{where} must be {names}, got {f'{type(value).__name__}(...)' if own else repr(value)}; "
+            + (
+                hint
+                or f"{'that is an object of another kind' if own else 'options are objects, not strings or classes'}."
+            )
+        )
 
 
 def require_bool(where: str, value: object) -> bool:

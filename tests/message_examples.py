@@ -242,6 +242,8 @@ ehd.JournalBearing(journal_radius=0.025, length=0.025, radial_clearance=5e-3, lu
 
 ehd.JournalBearing(journal_radius=0.025, length=0.025, radial_clearance=5e-4, lubricant=oil)
 
+ehd.JournalBearing(0.025, 0.025, 25e-6, oil)
+
 ehd.JournalBearing(journal_radius=0.025, length=0.025, clearance=25e-6, lubricant=oil)
 
 ehd.JournalBearing(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=0.02)

@@ -303,7 +303,7 @@ Errors, warnings and lines of the log, by the time when they appear. Search this
 that you read: the code on its right raises it, and so shows what is wrong in yours. What to do is in the message; more
 about causes and remedies is in [all messages](coupling/README.md#all-messages).
 
-`InputError` says that an argument can't be meant, `FilmError` that a film could not be evaluated, `RunError` that a run
+`InputError` says that an argument is invalid, `FilmError` that a film could not be evaluated, `RunError` that a run
 failed for another reason. Names that end in `Warning` are warnings: the call goes on. "log" is a line of the logger
 `exudyn_ehd`, "printed" what the code prints of an error that a result keeps.
 

@@ -532,7 +532,7 @@ def test_reading_results(example, tmp_path):
 def test_rotating_journal_over_all_stiffnesses(example):
     """The full grid: the softer the bush, the lower the peak and the wider the film; bushes agree."""
     cases = example("rotating_journal").main()
-    materials = ("E = 2.1e12 (paper)", "steel", "aluminium", "polymer")
+    materials = ("E = 2.1e12 Pa (paper)", "steel", "aluminium", "polymer")
     for closure in ("Gümbel", "mass conserving"):
         for name in ("aligned", "tilted"):
             for kind in ("liner", "modal", "nodal"):

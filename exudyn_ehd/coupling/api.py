@@ -207,7 +207,7 @@ def CreateLubricatedJoint(
     Raises
     ------
     InputError
-        Before anything runs, for: wrong or identical items; a position or axis that can't be meant; a planar body with
+        Before anything runs, for: wrong or identical items; an invalid position or axis; a planar body with
         an axis other than z; an initial configuration with the two axes not parallel within the clearance or the
         journal outside the bore; an assembled system.
 

@@ -51,7 +51,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
     display : FilmDisplay
         The film in Exudyn's renderer.
     bush : FlexibleBush or None
-        The nodal bush, if the bearing has one.
+        Bush of a bearing with an `ANCFBush`, as an object of the model; None without one.
 
     Examples
     --------
@@ -114,7 +114,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         Raises
         ------
         InputError
-            For a joint without spin, with a nodal bush, or whose journal is not a rigid body; for a system that is not
+            For a joint without spin, with an `ANCFBush`, or whose journal is not a rigid body; for a system that is not
             assembled.
         FilmError
             If no equilibrium was found.

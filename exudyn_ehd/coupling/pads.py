@@ -480,7 +480,7 @@ def CreateTiltingPadThrustBearing(
     Raises
     ------
     InputError
-        Before anything runs, for: wrong or identical items; planar bodies; a position or axis that can't be meant; a
+        Before anything runs, for: wrong or identical items; planar bodies; an invalid position or axis; a
         collar that touches pads in the initial configuration; an assembled system.
 
     Examples

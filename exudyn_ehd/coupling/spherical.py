@@ -299,7 +299,7 @@ def CreateLubricatedSphericalJoint(
     Raises
     ------
     InputError
-        Before anything runs, for: wrong or identical items; a position or axis that can't be meant; a ball that is not
+        Before anything runs, for: wrong or identical items; an invalid position or axis; a ball that is not
         inside the socket in the initial configuration; an assembled system.
 
     Examples

@@ -89,6 +89,10 @@ class Arc(Checked):
     Oil between two arcs is well mixed: what enters an arc has the temperature of a supply groove with hot oil carried
     over, see `FilmEnergy`.
 
+    Where the pressures of an edge and an end differ by dp, the pressure jumps at their corner, and the flow around the
+    corner grows with the logarithm of the grid: every halving of the intervals adds ``(2 ln 2 / pi) h^3 dp / (12 mu)``
+    to the leakage, for each corner with its gap h. In thin films this is little; where it is much, compare grids.
+
     Parameters
     ----------
     start : float
@@ -125,7 +129,12 @@ class Arc(Checked):
 
     checks: ClassVar = {
         "start": require_number,
-        "extent": partial(require_number, at_least=SMALLEST_ARC, below=math.tau, hint="leave arc out for a ring."),
+        "extent": partial(
+            require_number,
+            at_least=SMALLEST_ARC,
+            below=math.tau,
+            hint="use math.radians for degrees; leave arc out for a whole ring.",
+        ),
         "leading_pressure": require_number,
         "trailing_pressure": require_number,
         "preload": partial(NOT_NEGATIVE, below=1.0, hint="it is 1 - assembled clearance / machined clearance."),
@@ -175,6 +184,16 @@ def two_lobe(
     pressure : float, default 0.0
         Gauge pressure in the grooves, Pa.
 
+    Returns
+    -------
+    tuple of Arc
+        Two arcs for ``JournalBearing(arcs=...)``, in the order of their angles.
+
+    Raises
+    ------
+    InputError
+        For values outside their ranges.
+
     Examples
     --------
     >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
@@ -210,6 +229,16 @@ def three_lobe(
     pressure : float, default 0.0
         Gauge pressure in the grooves, Pa.
 
+    Returns
+    -------
+    tuple of Arc
+        Three arcs for ``JournalBearing(arcs=...)``, in the order of their angles.
+
+    Raises
+    ------
+    InputError
+        For values outside their ranges.
+
     Examples
     --------
     >>> [round(np.degrees(arc.start)) for arc in ehd.three_lobe(preload=0.6)]
@@ -235,6 +264,16 @@ def offset_halves(
         Angle that every groove spans, rad.
     pressure : float, default 0.0
         Gauge pressure in the grooves, Pa.
+
+    Returns
+    -------
+    tuple of Arc
+        Two arcs for ``JournalBearing(arcs=...)``, in the order of their angles.
+
+    Raises
+    ------
+    InputError
+        For values outside their ranges.
 
     Examples
     --------
@@ -273,6 +312,16 @@ def pressure_dam(
         Angle that every groove spans, rad.
     pressure : float, default 0.0
         Gauge pressure in the grooves, Pa.
+
+    Returns
+    -------
+    tuple of Arc
+        Two arcs for ``JournalBearing(arcs=...)``, in the order of their angles.
+
+    Raises
+    ------
+    InputError
+        For values outside their ranges.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Options of a bearing that exclude or need each other, refused when the bearing is described."""
+"""Checks of the options of a bearing that exclude or need each other, made when the bearing is described."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def check_combinations(bearing: BearingOptions) -> None:
 
 
 def _check_film(bearing: BearingOptions) -> None:
-    """Refuse effects that the film model leaves out."""
+    """Raise `InputError` for effects that the film model does not support."""
     film, oil, name = bearing["film"], bearing["lubricant"], type(bearing["film"]).__name__
     if isinstance(bearing["bush"], ElasticLiner) and not isinstance(film, FiniteLength):
         raise InputError(
@@ -61,7 +61,7 @@ def _check_film(bearing: BearingOptions) -> None:
     uneven = (bearing["roughness"], bearing["turbulence"], oil.shear_law)
     if isinstance(film, ClassicSOR) and (any(uneven) or isinstance(bearing["thermal"], FilmEnergy)):
         raise InputError(
-            "JournalBearing.film=ClassicSOR(...) is the paper's plain film and takes no roughness, turbulence, shear "
+            "JournalBearing.film=ClassicSOR(...) is a plain film without roughness, turbulence, shear "
             "thinning or temperature field; use film=FiniteLength(...)."
         )
 
@@ -78,7 +78,7 @@ RING_ALONE = {
 
 
 def _check_arcs(bearing: BearingOptions) -> None:
-    """Refuse options that need the whole ring."""
+    """Raise `InputError` for options that arcs do not support."""
     goes = {
         "film": isinstance(bearing["film"], FiniteLength),
         "inlet": type(bearing["inlet"]).__name__ == "Periodic",
@@ -96,7 +96,7 @@ def _check_arcs(bearing: BearingOptions) -> None:
 
 
 def _check_restrictors(bearing: BearingOptions) -> None:
-    """Refuse restrictors whose flow, or whose oil, has no balance."""
+    """Raise `InputError` for restrictors whose flow or oil temperature has no balance."""
     fed = [k for k, area in enumerate(bearing["supply"]) if isinstance(area.supply, Capillary)]
     if fed and isinstance(getattr(bearing["thermal"], "supply_temperature", None), Sump):
         raise InputError(
@@ -113,7 +113,7 @@ def _check_restrictors(bearing: BearingOptions) -> None:
 
 
 def _check_seals(bearing: BearingOptions) -> None:
-    """Refuse films that take their pressure at an end as given, and those without any pressure that is given."""
+    """Raise `InputError` for films that need a given pressure at a sealed end, or that have none anywhere."""
     seals, supply = bearing["end_seals"], bearing["supply"]
     others = [f"Lubricant.{law}" for law in FOLLOWING if getattr(bearing["lubricant"], law) is not None]
     others += [f"JournalBearing.{name}" for name in ("bush", "journal") if bearing[name]]
@@ -135,7 +135,7 @@ def _check_seals(bearing: BearingOptions) -> None:
 
 
 def require_viscosities(where: str, thermal: LumpedThermal | FilmEnergy, oil: Lubricant) -> None:
-    """Refuse temperatures of a thermal effect at which the oil's law gives no viscosity."""
+    """Raise `InputError` for temperatures of a thermal effect at which the oil's law gives no viscosity."""
     law = oil.temperature_law
     for name, value in (vars(thermal) | {"supply_temperature": known_supply(thermal)}).items():
         if law is None or value is None or not name.endswith("temperature"):
@@ -151,7 +151,7 @@ def require_viscosities(where: str, thermal: LumpedThermal | FilmEnergy, oil: Lu
 
 
 def _check_heat(bearing: BearingOptions) -> None:
-    """Refuse temperatures at which the oil's law gives no viscosity, as for degrees Celsius given as kelvin, and a
+    """Raise `InputError` for temperatures without a viscosity, such as degrees Celsius given as kelvin, and for a
     temperature field that does not go with the bearing."""
     thermal, oil = bearing["thermal"], bearing["lubricant"]
     require_viscosities("JournalBearing.thermal", thermal, oil)
@@ -172,7 +172,7 @@ def _check_heat(bearing: BearingOptions) -> None:
 
 
 def _check_roughness(bearing: BearingOptions) -> None:
-    """Refuse rough surfaces with a wall, of two roughnesses, or too rough for the clearance."""
+    """Raise `InputError` for rough surfaces with a wall, of two roughnesses, or too rough for the clearance."""
     asperity, roughness, clearance = bearing["asperity"], bearing["roughness"], bearing["radial_clearance"]
     if bearing["contact"] is not None:
         raise InputError(

@@ -1,4 +1,4 @@
-"""Film models that a scene names, and the way from them to grid and solver; the only place that asks which one it is.
+"""Film models of a bearing, with their grids and solvers; the only place that distinguishes between the models.
 
 Without axial flow (`LongBearing`) a closed ring keeps its oil and has no reference pressure: a complementarity
 condition can't remove any, so that its solution is the full film with its lowest pressure at the cavity's. One line of
@@ -239,7 +239,7 @@ def check_film(
     """
     if isinstance(film, ClassicSOR) and not closure.clips:
         raise InputError(
-            f"JournalBearing.film=ClassicSOR(...) is the paper's scheme with the Gümbel condition, got "
+            f"JournalBearing.film=ClassicSOR(...) works with Gümbel's condition only, got "
             f"cavitation={closure!r}; use cavitation=Gumbel(), or film=FiniteLength(...) for every other closure."
         )
     if isinstance(film, ClassicSOR) and supply:
@@ -283,7 +283,7 @@ def no_line_with(film: FilmOption, closure: Closure, bush: object, oil: Lubrican
 
 
 def check_line(film: FilmOption, closure: Closure, bush: object, oil: Lubricant) -> None:
-    """Refuse a rupture line inside the cells with what does not know it yet."""
+    """Raise `InputError` for a rupture line inside the cells with options that do not support it."""
     others = no_line_with(film, closure, bush, oil) if closure.line_in_cells else []
     if not others:
         return

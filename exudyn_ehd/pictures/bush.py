@@ -182,7 +182,7 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str) -> Fi
         Label of the colour bar, with unit.
     """
     if len(frames) == 0:
-        raise InputError("contour_figure frames must hold at least one Frame, got none; pass what is to be drawn.")
+        raise InputError("contour_figure: frames must hold at least one Frame, got none; pass what is to be drawn.")
     columns = min(3, int(np.ceil(np.sqrt(len(frames)))))
     rows = -(-len(frames) // columns)
     norm = Normalize(*colour_limits(np.array([frame.values for frame in frames])))

@@ -205,7 +205,7 @@ class ModalBush(_Solid):
 
 
 def require_bore(mesh: HollowCylinder | BushMesh, radius: float, length: float) -> None:
-    """Refuse a bush whose bore is not that of a film of this bore radius and length, m."""
+    """Raise `InputError` for a bush whose bore does not fit a film of this bore radius and length, m."""
     if isinstance(mesh, HollowCylinder):
         own, what, ends = mesh.inner_radius, "HollowCylinder.inner_radius", (-0.5 * mesh.length, 0.5 * mesh.length)
     else:

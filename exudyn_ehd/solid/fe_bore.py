@@ -407,17 +407,17 @@ def add_bore_modes(
     True
     """
     where = "add_bore_modes"
-    point = require_vector(f"{where} position", position, 3, "m")
-    rotation = require_frame(f"{where} axis", axis)
-    radius = require_number(f"{where} radius", radius, "m", above=0.0)
-    length = require_number(f"{where} length", length, "m", above=0.0)
-    tolerance = require_tolerance(f"{where} tolerance", tolerance)
+    point = require_vector(f"{where}.position", position, 3, "m")
+    rotation = require_frame(f"{where}.axis", axis)
+    radius = require_number(f"{where}.radius", radius, "m", above=0.0)
+    length = require_number(f"{where}.length", length, "m", above=0.0)
+    tolerance = require_tolerance(f"{where}.tolerance", tolerance)
     place = (np.asarray(fem.nodes["Position"], dtype=float) - point) @ rotation
     bore = find_bore(where, place, radius, length, radius_tolerance, nodes)
     fixed = np.unique(np.asarray(fixed_nodes, dtype=int))
     if fixed.size < 3 or np.isin(fixed, bore).any():
         raise InputError(
-            f"{where} fixed_nodes must be three nodes or more off the bore that hold the body, got {fixed.size}, "
+            f"{where}.fixed_nodes must be three nodes or more off the bore that hold the body, got {fixed.size}, "
             f"{int(np.isin(fixed, bore).sum())} of them on the bore; give the nodes of the first interface of your "
             "mode basis."
         )
@@ -429,7 +429,7 @@ def add_bore_modes(
             solve = held_solution(K, fixed)
         except RuntimeError as singular:
             raise InputError(
-                f"{where} fixed_nodes don't hold the body: its stiffness is singular ({singular})."
+                f"{where}.fixed_nodes don't hold the body: its stiffness is singular ({singular})."
             ) from None
         found = film_modes(surface, solve, K.shape[0], tilted, tolerance, without_rigid=True)
     modes = found.modes / np.abs(surface.radial @ found.modes[surface.places]).max(axis=0)

@@ -144,7 +144,7 @@ class ElasticJournal(Checked):
         return self.held.bands if isinstance(self.held, HeldBands) else ()
 
     def require_fit(self, radius: float, length: float, bush: object) -> None:
-        """Refuse a journal of ``radius`` that does not carry a film of ``length`` about z = 0, or go with its bush."""
+        """Raise `InputError` for a pin of ``radius`` that does not fit a film of ``length`` about z = 0 or ``bush``."""
         half, (low, high) = 0.5 * length * (1.0 - 1e-9), self.span
         if bush is not None and not isinstance(bush, ModalBush):
             raise InputError(

@@ -343,12 +343,12 @@ class BushMesh:
         InputError
             No grid line runs at this angle.
         """
-        theta = require_number("BushMesh.generatrix theta", theta, "rad")
+        theta = require_number("BushMesh.generatrix: theta", theta, "rad")
         gap = np.abs(wrapped(surface.theta - theta))
         near = surface.nodes[gap < SMALL]
         if len(near) == 0:
             raise InputError(
-                f"BushMesh.generatrix theta must be the angle of a grid line, got {theta:g} rad; the nearest one is "
+                f"BushMesh.generatrix: theta must be the angle of a grid line, got {theta:g} rad; the nearest one is "
                 f"{surface.theta[int(np.argmin(gap))]:g} rad: take that one or change the circumferential count."
             )
         return self.line(near)

@@ -131,7 +131,7 @@ def mesh_from_fem(
     kinds = sorted({key for block in fem.elements for key in block if key != "Name" and len(block[key])})
     if len(kinds) != 1 or kinds[0] not in [element.fem for element in ELEMENTS]:
         raise InputError(
-            f"mesh_from_fem fem.elements must hold Hex20 or Tet10 elements, of one kind, got {kinds}; mesh the bush "
+            f"mesh_from_fem: fem.elements must hold Hex20 or Tet10 elements, of one kind, got {kinds}; mesh the bush "
             "with C3D20 or C3D10 elements and put other parts into a FEMinterface of their own."
         )
     sets = [np.asarray(block[kinds[0]], dtype=int) for block in fem.elements if len(block.get(kinds[0], ()))]
@@ -191,23 +191,23 @@ def mesh_from_arrays(
     >>> own.outer.nodes.size == bush.outer.nodes.size
     True
     """
-    radius = require_number("mesh_from_arrays bore_radius", bore_radius, "m", above=0.0)
+    radius = require_number("mesh_from_arrays.bore_radius", bore_radius, "m", above=0.0)
     try:
         nodes, elements = np.asarray(nodes, dtype=float), np.asarray(elements, dtype=int)
     except (TypeError, ValueError) as error:
         raise InputError(
-            f"mesh_from_arrays nodes and elements must be arrays of numbers, all elements of one kind: {error}."
+            f"mesh_from_arrays: nodes and elements must be arrays of numbers, all elements of one kind: {error}."
         ) from None
     if nodes.ndim != 2 or nodes.shape[1] != 3 or elements.ndim != 2 or elements.shape[1] not in (20, 10):
         raise InputError(
-            f"mesh_from_arrays nodes and elements must have shapes (n, 3) and (m, 20) or (m, 10), got {nodes.shape} "
+            f"mesh_from_arrays: nodes and elements must have shapes (n, 3) and (m, 20) or (m, 10), got {nodes.shape} "
             f"and {elements.shape}; only 20-node hexahedra and 10-node tetrahedra are supported, one kind in a mesh."
         )
-    centre = require_vector("mesh_from_arrays origin", origin, 3, "m")
-    nodes = (nodes - centre) @ require_frame("mesh_from_arrays axis", axis)
+    centre = require_vector("mesh_from_arrays.origin", origin, 3, "m")
+    nodes = (nodes - centre) @ require_frame("mesh_from_arrays.axis", axis)
     for number in (elements.min(initial=len(nodes)), elements.max(initial=-1)):
         counts = "subtract 1 from numbers that count from 1, as Abaqus does."
-        require_number("mesh_from_arrays elements", number, at_least=0, at_most=len(nodes) - 1, hint=counts)
+        require_number("mesh_from_arrays.elements", number, at_least=0, at_most=len(nodes) - 1, hint=counts)
     used, own = np.unique(elements, return_inverse=True)
     nodes, elements = nodes[used], own.reshape(elements.shape)
     _check_volume(nodes, elements)
@@ -219,7 +219,7 @@ def mesh_from_arrays(
     bore = patch(nodes, boundary[(np.abs(r - radius) < 0.01 * radius)[_corners(boundary)].all(axis=1)])
     if len(bore.nodes) == 0:
         raise InputError(
-            f"mesh_from_arrays bore_radius must be the radius of the bore in m, got {radius:g}; no boundary face lies "
+            f"mesh_from_arrays.bore_radius must be the radius of the bore in m, got {radius:g}; no boundary face lies "
             f"there: the nodes have radii {r.min():g} to {r.max():g} m. Check units, origin and axis."
         )
     outer = _held_faces(nodes, boundary, used, held, (low, high, np.isin(np.arange(len(r)), bore.nodes)))
@@ -254,21 +254,21 @@ def _held_faces(
         member = np.isin(used, np.flatnonzero(numbers) if numbers.dtype == bool else numbers)
     if member.shape != (len(nodes),) or member.dtype != bool:
         raise InputError(
-            f"mesh_from_arrays held: the function must give one bool for each of {len(nodes)} nodes, got an array of "
+            f"mesh_from_arrays.held: the function must give one bool for each of {len(nodes)} nodes, got an array of "
             f"shape {member.shape} and type {member.dtype}."
         )
     inside = member[boundary].all(axis=1)
     faces = boundary[inside & ~whole[-1]]
     if left := np.count_nonzero(member[_corners(boundary)].all(axis=1) & ~np.any([inside, *whole], axis=0)):
         warnings.warn(
-            f"mesh_from_arrays held: {left} faces have their corners, but not all of their nodes among the held ones, "
+            f"mesh_from_arrays.held: {left} faces have their corners, but not all of their nodes among the held ones, "
             "and are left free; raise the tolerance (nodes on straight edges lie off a cylinder), or name all nodes.",
             stacklevel=3,
         )
     if len(faces) == 0:
         r = np.hypot(nodes[:, 0], nodes[:, 1])
         raise InputError(
-            f"mesh_from_arrays held: {int(member.sum())} nodes are chosen, and no boundary face besides the bore has "
+            f"mesh_from_arrays.held: {int(member.sum())} nodes are chosen, and no boundary face besides the bore has "
             f"all of its nodes among them; the nodes have radii {r.min():g} to {r.max():g} m and z from "
             f"{nodes[:, 2].min():g} to {nodes[:, 2].max():g} m in the bush frame. Check units, radius and tolerance."
         )
@@ -287,7 +287,7 @@ def _check_volume(nodes: np.ndarray, elements: np.ndarray) -> None:
     if volume.min() <= 0:
         bad = np.flatnonzero(volume <= 0)
         raise InputError(
-            f"mesh_from_arrays elements must have a positive volume everywhere, got {len(bad)} inverted or degenerate "
+            f"mesh_from_arrays.elements must have a positive volume everywhere, got {len(bad)} inverted or degenerate "
             f"ones, the first is element {bad[0]}; check the node order (Abaqus {element.abaqus}) and the mesh's "
             "quality."
         )

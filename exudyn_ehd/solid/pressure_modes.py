@@ -344,8 +344,9 @@ def fewest_modes(
         low, high = (low, middle) if error(middle) <= tolerance else (middle, high)
     if (least := error(high)) > tolerance:
         raise InputError(
-            f"the modes' tolerance {tolerance:g} can't be met with {LARGEST_WAVE} waves around the bore and axial "
-            f"order {LARGEST_AXIAL} (error {least:.2g}); raise it, or take an ANCFBush."
+            f"tolerance (of a bush, a journal or add_bore_modes) must be at least {least:.2g} for this surface, got "
+            f"{tolerance:g}: modes have up to {LARGEST_WAVE} waves around it and axial order {LARGEST_AXIAL}; raise it "
+            "or take an ANCFBush."
         )
     # singular values within 0.1 % belong to a pair, cos and sin, that the number of modes must not part
     while high < sizes.size and sizes[high] > 0.999 * sizes[high - 1]:

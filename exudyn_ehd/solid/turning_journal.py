@@ -64,7 +64,7 @@ class FEJournal(FESurface):
     """
 
     def require_fit(self, radius: float, length: float, bush: object) -> None:
-        """Refuse a bush around it."""
+        """Raise `InputError` for a bush around it."""
         if bush is not None:
             raise InputError(
                 "JournalBearing.journal=FEJournal(...) goes with a rigid bore, got "

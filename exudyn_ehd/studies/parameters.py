@@ -30,7 +30,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.progress import is_shown
-from exudyn_ehd.status import EHDError, InputError, require_integer, require_number
+from exudyn_ehd.status import EHDError, InputError, did_you_mean, require_integer, require_number
 from exudyn_ehd.studies.rows import Row, RowFile, require_executor, rows_of
 from exudyn_ehd.tables import Table
 
@@ -252,8 +252,10 @@ def varied(bearing: JournalBearing, parameters: Mapping[str, float]) -> JournalB
     unknown = sorted(set(values) - set(known))
     if unknown:
         raise InputError(
-            f"varied: parameters must be among {', '.join(known)}, got {', '.join(unknown)}; "
-            "write a function of your own."
+            f"varied: parameters must be among {', '.join(known)} (of an EquilibriumPoint also speed, load), got "
+            f"{', '.join(unknown)}; "
+            + (f"did you mean {meant}? For others " if (meant := did_you_mean(unknown[0], known)) else "")
+            + "write a function of your own."
         )
     if "viscosity" in values:
         lubricant = dataclasses.replace(bearing.lubricant, viscosity=values.pop("viscosity"))

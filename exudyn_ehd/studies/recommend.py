@@ -139,7 +139,7 @@ def recommend(
     Raises
     ------
     InputError
-        For arguments that can't be meant.
+        For arguments of a wrong type or shape, or outside their ranges.
 
     Examples
     --------
@@ -198,7 +198,7 @@ def _require(
     bearing: object, error: float, quantity: str, eccentricity_ratio: float | tuple[float, float] | None
 ) -> tuple[float, float]:
     """Checked arguments; the lowest and the highest eccentricity ratio."""
-    require_number("recommend: error", error, above=0.0, below=1.0, hint="it is relative.")
+    require_number("recommend: error", error, above=0.0, below=1.0, hint="it is relative: 0.01 is 1 %.")
     if not isinstance(bearing, JournalBearing):
         raise InputError(f"recommend: expected a JournalBearing, got {bearing!r}.")
     if eccentricity_ratio is None:

@@ -117,7 +117,7 @@ def recommend_steps(
     Raises
     ------
     InputError
-        For arguments that can't be meant.
+        For arguments of a wrong type or shape, or outside their ranges.
 
     Examples
     --------
@@ -130,7 +130,7 @@ def recommend_steps(
     True
     """
     require_type("recommend_steps: bearing", bearing, JournalBearing)
-    require_number("recommend_steps: error", error, above=0.0, below=1.0, hint="it is relative.")
+    require_number("recommend_steps: error", error, above=0.0, below=1.0, hint="it is relative: 0.01 is 1 %.")
     require_number("recommend_steps: period", period, "s", above=0.0)
     require_number("recommend_steps: mass", mass, "kg", above=0.0)
     cycle, spins = _require_cycle(load, speed)

@@ -297,7 +297,10 @@ def resolve(mbs: exu.MainSystem, where: str, number: object) -> Item:
         ):
             return body_item(mbs, where, ObjectIndex(int(number)))
     except exu.ExudynError as error:
-        raise InputError(f"{where} is not an item of this system: {number!r} ({error}).") from None
+        raise InputError(
+            f"{where} is not an item of this system: {number!r} ({error}); pass what mbs.Create..., AddObject, AddNode "
+            "or AddMarker returned."
+        ) from None
     raise InputError(
         f"{where} must be an ObjectIndex (body or ground), a NodeIndex (rigid-body, beam, cable or point node) or a "
         f"MarkerIndex (rigid marker), got {number!r}; pass what AddObject, AddNode, AddMarker or mbs.Create... "

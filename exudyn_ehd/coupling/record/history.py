@@ -18,7 +18,7 @@ from exudyn_ehd.joint.audit.samples import RecordedSteps
 from exudyn_ehd.joint.step_error import BALL, LOAD_COLUMNS, FilmLoad, recorded_entries
 from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.pictures.records import HistoryRecord, shown
-from exudyn_ehd.status import ROUNDING, InputError
+from exudyn_ehd.status import ROUNDING, InputError, did_you_mean
 from exudyn_ehd.storage import replacing, require_path
 from exudyn_ehd.tables import data_frame, write_csv
 
@@ -270,7 +270,10 @@ class JointHistory(RecordedSteps, HistoryRecord, HistoryPictures):
     def __getattr__(self, name: str) -> Any:
         column = self.__dict__.get("_column")
         if column is None or name not in COLUMNS:
-            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+            raise AttributeError(
+                f"{type(self).__name__!r} object has no attribute {name!r}"
+                + (f"; did you mean {meant!r}?" if (meant := did_you_mean(name, COLUMNS)) else "")
+            )
         self.__dict__[name] = values = column(name)
         return values
 

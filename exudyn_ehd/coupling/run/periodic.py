@@ -43,8 +43,9 @@ SMALLEST_RISE = 1.0
 class UntilPeriodic(Checked):
     """End a run as soon as the orbits of all joints repeat themselves: ``SolveDynamic(..., until_periodic=...)``.
 
-    ``endTime`` of the settings limits the run; leave room for at least three periods. Choose the step size so that a
-    period is a whole number of steps. If the orbits have not closed by then, `SolveDynamic` raises a `RunError`.
+    ``endTime`` of the settings limits the run; leave room for four periods or more. Before the fourth cycle ends, the
+    orbits only count as closed if they change by less than a hundredth of the tolerance. Choose the step size so that a
+    period is a whole number of steps. If the orbits have not closed by ``endTime``, `SolveDynamic` raises a `RunError`.
 
     Parameters
     ----------

@@ -235,7 +235,7 @@ def place(
     require_system(_WHERE, mbs, assembled=True, of=f" of joint '{name}'")
     if getattr(element, "bush", None) is not None:
         raise InputError(
-            f"{_WHERE}: joint '{name}' has a nodal bush, whose nodes would have to move too; place the journal's body "
+            f"{_WHERE}: joint '{name}' has an ANCFBush, whose nodes would have to move too; place the journal's body "
             "before the joint is created (initialDisplacement), at ehd.equilibrium(...).position: the bush then "
             "starts in equilibrium with its film."
         )

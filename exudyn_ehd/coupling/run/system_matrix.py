@@ -79,7 +79,7 @@ class SystemMatrix:
         data = mbs.systemData
         if mbs.NumberOfGeneralContacts():
             raise InputError(
-                "SolveDynamicSparse mbs must have no GeneralContact, whose stiffness Exudyn does not return; use "
+                "SolveDynamicSparse.mbs must have no GeneralContact, whose stiffness Exudyn does not return; use "
                 "contact objects (ObjectContact...), or mbs.SolveDynamic."
             )
         self.coordinates, self.constraints = len(data.GetODE2Coordinates()), len(data.GetAECoordinates())
@@ -91,7 +91,7 @@ class SystemMatrix:
             kind = mbs.GetNode(NodeIndex(number))["nodeType"]
             if "LG" in kind or "LieGroup" in kind:
                 raise InputError(
-                    f"SolveDynamicSparse mbs must have additive coordinates only, got node {number} of type {kind}; "
+                    f"SolveDynamicSparse.mbs must have additive coordinates only, got node {number} of type {kind}; "
                     "create rigid bodies with nodeType=exu.NodeType.RotationEulerParameters or RotationRxyz, or use "
                     "mbs.SolveDynamic."
                 )
@@ -99,7 +99,7 @@ class SystemMatrix:
                 self.parts.append(_euler_parameters(mbs, NodeIndex(number), self.coordinates))
         if len(data.GetODE1Coordinates()):
             raise InputError(
-                "SolveDynamicSparse mbs must have second-order coordinates only, got "
+                "SolveDynamicSparse.mbs must have second-order coordinates only, got "
                 f"{len(data.GetODE1Coordinates())} of first order; use mbs.SolveDynamic."
             )
         for number in range(data.NumberOfObjects()):
@@ -218,7 +218,7 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
     terms = [(k, i) for i, k in matrices if k in offered and not (hidden and k is kind.MassMatrix)]
     if constrained and object_type not in _CONSTRAINTS:
         raise InputError(
-            f"SolveDynamicSparse mbs must hold constraints between markers only, got object {int(item)} of type "
+            f"SolveDynamicSparse.mbs must hold constraints between markers only, got object {int(item)} of type "
             f"{object_type}, whose algebraic equations have coordinates of their own; use mbs.SolveDynamic."
         )
     # solved for velocities whatever the settings are
@@ -228,7 +228,7 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
             mbs.ComputeItem(item, what)
         except exu.ExudynError as error:
             raise InputError(
-                f"SolveDynamicSparse mbs must hold objects whose matrices Exudyn returns, got object {int(item)} of "
+                f"SolveDynamicSparse.mbs must hold objects whose matrices Exudyn returns, got object {int(item)} of "
                 f"type {object_type} without {what.name}; use mbs.SolveDynamic for this model."
             ) from error
     differs = kind.ODE2LHS in offered and kind.JacobianODE2 not in offered and object_type not in _SIMPLE

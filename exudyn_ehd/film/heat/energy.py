@@ -170,6 +170,42 @@ def end_flows_around(turned, pressed, stored, squeezed, full, flow_out, entering
         flow_out[i if way > 0 else i - 1] += way * (begin - carried) * (k + 1) / n
 
 
+@njit(cache=True)
+def pass_on(x, couette, found, edges, spin):
+    """Make a film on arcs pass on along theta what it receives, not more, and at most the flow of a full film.
+
+    A cavitation model that does not conserve mass keeps a cavity full while its gap widens along theta. The oil that it
+    makes there would be fresh and cold, and would enter the groove behind the arc in place of the feed.
+
+    Parameters
+    ----------
+    x, couette : (n, m) arrays
+        Flows over the links i -> i+1, changed in place, and those of a full film by sliding alone.
+    found : (n, m) array
+        Oil that the cavitation model makes, below 0 where it loses oil; changed in place.
+    edges : (k, 2) array
+        First and last column of every arc.
+    spin : float
+        Its sign is that of the sliding.
+
+    Returns
+    -------
+    (n, m) array
+        Oil that the edges at which arcs end receive less.
+    """
+    less, way = np.zeros_like(x), 1 if spin > 0.0 else -1
+    for first, last in edges[:, ::way]:
+        for i in range(first, last, way):
+            link, j = (i if way > 0 else i - 1), i + way
+            flow = way * x[link]
+            least, most = np.minimum(flow, 0.0), np.maximum(flow, way * couette[link])
+            cut = flow - np.minimum(np.maximum(flow - found[i], least), most)
+            x[link] -= way * cut
+            found[i] -= cut
+            (less if j == last else found)[j] += cut
+    return less
+
+
 def content_rate(
     H: np.ndarray, H_t: np.ndarray, fill: np.ndarray, mass_old: np.ndarray, inverse_step: float, squeeze: bool
 ) -> np.ndarray:

@@ -2,10 +2,10 @@
 
 With a lubricant's ``density_law`` (compressible film), flows and contents are masses over the density at ambient
 pressure rho, so that c_p belongs to the mass. The dissipated power ``Phi`` heats the film: shear, and the mass
-flow under pressure times the drop of ``integral of dp / (rho(p) / rho)``. Heat of compression ``alpha_T T dp/dt``
-(alpha_T thermal expansion) is left out, in compressible films as in others: it is reversible, oil that passes through a
-pressure p is warmer there by ``alpha_T T p / (rho c_p)``, with 7e-4 1/K and 320 K by 1.3 K per 10 MPa, and cools down
-as it leaves. The density does not depend on the temperature.
+flow under pressure times the drop of ``integral of dp / (rho(p) / rho)``. Heat of compression ``alpha_T T dp/dt`` with
+the thermal expansion alpha_T is omitted, in compressible films too. It is reversible: at a pressure p the oil is warmer
+by ``alpha_T T p / (rho c_p)``, 1.3 K per 10 MPa with 7e-4 1/K and 320 K, and it cools down as it leaves. The density
+does not depend on the temperature.
 
 Heat in the wall of a bush or of a journal: rings of finite volumes, a column for each of the film's
 ----------------------------------------------------------------------------------------------------
@@ -104,8 +104,8 @@ def known_supply(thermal: LumpedThermal | FilmEnergy) -> float:
 class LumpedThermal(Checked):
     """One temperature T for the whole film; for warm-up and a first idea of the viscosity.
 
-    The viscosity follows it by the lubricant's ``temperature_law``, such as those of `oil`; without one it stays, and T
-    tells how warm the film gets. Adds at most 5 % to the time of a step, 17 % with a density law.
+    The viscosity follows it by the lubricant's ``temperature_law``, such as those of `oil`; without one it stays
+    constant, and T is a result only. Adds at most 5 % to the time of a step, 17 % with a density law.
 
     ``C dT/dt = P - rho c_p Q (T_out - T_supply) - G (T - T_housing)``, with the mechanical and pumping power P that the
     film dissipates, the flow Q that leaves the film and is replaced by supply oil, its temperature T_out, and
@@ -114,16 +114,16 @@ class LumpedThermal(Checked):
     T_supply)``. Of a supply area Q counts the net flow: an area is a well-mixed volume, see `FilmEnergy`. Heat of
     compression is omitted: some 1.3 K per 10 MPa, reversible.
 
-    Films on end faces (``thrust``) have the same T. Bore and faces lie in series: what leaves the bore at an end, L,
-    enters the gap of the face there, which takes in I at its inner radius, with what its cavities find, and B at its
-    outer radius. So ``Q = Q_bore + sum of max(I - L, 0) + B`` is replaced by supply oil, P is that of all films, and V
-    contains the gaps between bush and collars. Without pads and pressures a face takes in nothing, and its heat leaves
-    with the oil of the bore and by G.
+    Films on end faces (``thrust``) have the same T. Bore and faces lie in series: the flow L that leaves the bore at an
+    end enters the gap of the face there. The face takes in the flow I at its inner radius (with the oil that cavities
+    gain by a model that does not conserve it) and B at its outer radius. So supply oil replaces the flow ``Q = Q_bore +
+    sum of max(I - L, 0) + B``; P is the power of all films, and V contains the gaps between bush and collars. A face
+    without pads and pressures takes in no oil: its heat leaves with the oil of the bore and by G.
 
     In time: backward differences of second order over the accepted steps; the first step, and steps more than 2.4 times
-    as long as the one before, backward Euler. The force of a step uses the temperature that is extrapolated to its end;
-    so does P, unless the step is longer than the exchange of the oil takes. `steady` and `equilibrium` use the steady
-    temperature, a static solution of a multibody model the initial one.
+    as long as the one before, backward Euler. Force and P of a step use the temperature that is extrapolated to its
+    end. In steps longer than the time in which the film's oil is replaced, P is linearised about it. `steady` and
+    `equilibrium` use the steady temperature, a static solution of a multibody model the initial one.
 
     Parameters
     ----------
@@ -243,8 +243,8 @@ class Conduction(Checked):
 class FilmEnergy(Checked):
     """Temperature field T(theta, z) of the film; where heating decides load or peak temperature.
 
-    The viscosity follows it by the lubricant's ``temperature_law``, such as those of `oil`; without one it stays, and
-    the field tells where the film is how warm. Adds a third to the time of a step with `ElrodAdams`, doubles it with
+    The viscosity follows it by the lubricant's ``temperature_law``, such as those of `oil`; without one it stays
+    constant, and the field is a result only. Adds a third to the time of a step with `ElrodAdams`, doubles it with
     `SwiftStieber` (half more with a density law). With ``across=2`` a step takes four to six times as long.
 
     ``rho c_p [d(m T)/dt + div(q T)] = Phi - U_b (T - T_b) - U_j (T - T_j)``, with the film content m (oil per area),
@@ -258,15 +258,16 @@ class FilmEnergy(Checked):
     Pinkus, J. Tribology 108 (1986) 231). To flush or cool a groove, lower ``carry_over``. In films without axial flow,
     oil that pressure drives into an area leaves the bearing, and oil from an area is fresh. Cavitation models that do
     not conserve mass lose oil at the rupture line and find it again where the film begins: there it returns fully
-    mixed, with the leakage replaced by supply oil.
+    mixed, with the leakage replaced by supply oil. On an arc the cavity passes its oil on to the groove behind the arc.
 
     In time: backward differences of second order over the accepted steps; the first step, and steps more than 2.4 times
-    as long as the one before, backward Euler. The viscosity of a step is that of the temperatures that are extrapolated
-    to its end, but never to below the coldest temperature around. So is its heat, unless the step is longer than the
-    exchange of the oil takes. Where the oil passes more than a column in a step, its transport is of first order in
-    part: with steps of three turns the temperatures of fed films settle up to 27 % of their range away from the steady
-    ones at single vertices, up to 5 % in the mean, forces up to 6 %. Walls and sumps: backward Euler. `steady` and
-    `equilibrium` use the steady field, a static solution of a multibody model the initial temperature.
+    as long as the one before, backward Euler. Viscosity and heat of a step use the temperatures that are extrapolated
+    to its end, which stay above the coldest one of film, walls and oil that enters. In steps longer than the time in
+    which the film's oil is replaced, the heat is linearised about them. If the oil passes more than one column of the
+    grid in a step, its transport is partly of first order: in steps of three turns the temperatures of fed films
+    approach values that differ from the steady ones by up to 27 % of their range at single vertices and 5 % in the
+    mean, and forces by up to 6 %. Walls and sumps: backward Euler. `steady` and `equilibrium` use the steady field, a
+    static solution of a multibody model the initial temperature.
 
     Errors by the steps: with 120 steps per period of the load 0.01 to 0.7 % of the film thickness in eleven of thirteen
     random scenes that heat by 3 to 53 K, 1.8 and 6.5 % in the others; they fall with the square of the step

@@ -368,9 +368,11 @@ class Lubricant(Checked):
     specific_heat : float, default 2000.0
         J/(kg K); only used by thermal effects.
     pressure_law : BarusPressure, RoelandsPressure, PressureOption or None, default None
+        Viscosity under pressure; None: the viscosity does not depend on the pressure.
     temperature_law : ReynoldsTemperature, VogelTemperature, WaltherTemperature, TableViscosity or None, default None
         Or a `TemperatureLaw`. None: the viscosity does not depend on the temperature.
     shear_law : CarreauShear, ShearLaw or None, default None
+        Viscosity under shear; None: Newtonian.
     density_law : DowsonHigginson, DensityLaw or None, default None
         Density under pressure, at any temperature: reported flows, m3/s, are then mass flows over ``density``. None:
         incompressible.

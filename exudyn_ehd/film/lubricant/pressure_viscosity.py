@@ -41,7 +41,7 @@ class PressureLaw(Protocol):
 
     @property
     def largest_pressure(self) -> float:
-        """Pa, at which the oil counts as solid."""
+        """Pressure at which the oil counts as solid, Pa."""
 
     def ratio(self, p: np.ndarray) -> np.ndarray:
         """r(p) for p >= 0."""
@@ -101,7 +101,7 @@ class BarusPressure(Checked):
 
     @property
     def largest_pressure(self) -> float:
-        """Pa, at which the oil counts as solid."""
+        """Pressure at which the oil counts as solid, Pa."""
         return min(math.log(LARGEST_RATIO) / self.coefficient, LARGEST_PRESSURE)
 
     def ratio(self, p: np.ndarray) -> np.ndarray:
@@ -178,7 +178,7 @@ class BoundRoelands(NamedTuple):
 
     @property
     def largest_pressure(self) -> float:
-        """Pa, at which the oil counts as solid."""
+        """Pressure at which the oil counts as solid, Pa."""
         # ln(1 + p / p_0) at that ratio; bounded, because a nearly constant viscosity reaches the ratio at no pressure
         end = min(math.log1p(math.log(LARGEST_RATIO) / self.a) / self.Z, 100.0)
         return min(self.p0 * math.expm1(end), LARGEST_PRESSURE)

@@ -1,8 +1,8 @@
 """Gap of a rigid journal in a bore, also with steps, and derivatives of a film's balances to the gap.
 
 ``H = 1 - (x + bx z) cos theta - (y + by z) sin theta (+ extra)`` in scaled lengths: x, y divided by c; z by R; bx, by
-multiplied by R/c. Paper, Eqs. (3), (5), (7). The gap's rate at fixed theta is the same expression in the rates, without
-the 1.
+multiplied by R/c. These are Eqs. (3), (5), (7) of Flores' paper. The gap's rate at fixed theta is the same expression
+in the rates, without the 1.
 
 Symbols: pose = (x, y, bx, by) scaled, cos_x / sin_x at vertices, cos_f / sin_f at the links i -> i+1, z (m,) vertices.
 

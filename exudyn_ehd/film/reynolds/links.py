@@ -4,8 +4,9 @@ With H = h/c, lengths over R and P = p c^2 / (12 mu R^2) in 1/s, the balance of 
 
     sum over its links of (V H - H^3 dP/ds) + d(H)/dt area = 0,      V = (U_x, U_z) / (2 R) in 1/s,
 
-which is the conservative form of the paper's Eq. (4) (Poiseuille and Couette flux of a thin film, squeeze). Links in
-theta use the gap on the link itself, ``HF``; links in z the mean of both vertices, which is exact for a tilted journal.
+which is the conservative form of Eq. (4) of Flores' paper (Poiseuille and Couette flux of a thin film, squeeze). Links
+in theta use the gap on the link itself, ``HF``; links in z the mean of both vertices, which is exact for a tilted
+journal.
 
 With an effect (flow factors of rough surfaces, shear thinning, a temperature field) the flow over a link is
 ``V carrier - conductance dP/ds``. A plain film has the carrier H, the conductance H^3 and no `LinkFlux`.

@@ -161,8 +161,8 @@ class Hirs(_Transition):
     onset, full : float or None, default None
         As for `NgPan`.
     coefficient, exponent : float, default 0.066, -0.25
-        n and m of the shear stress on a wall, ``(n / 2) rho u^2 (rho u h / mu)^m``, with the mean flow's speed u
-        relative to it; m from -1 (laminar) to 0 (rough).
+        n and m of the shear stress on a wall, ``(n / 2) rho u^2 (rho u h / mu)^m``, with the speed u of the
+        mean flow relative to this wall; m from -1 (laminar) to 0 (rough).
 
     Source
     ------

@@ -270,7 +270,8 @@ def require_areas(supply: object) -> None:
     if not isinstance(supply, tuple) or not all(isinstance(a, SupplyArea) for a in supply):
         raise InputError(
             f"JournalBearing.supply must be a tuple of AxialGroove(...), CircumferentialGroove(...), Hole(...) or "
-            f"Pocket(...), got {supply!r}; for a single one write supply=(AxialGroove(...),)."
+            f"Pocket(...), got {supply!r}; for a single one write supply="
+            f"({type(supply).__name__ if isinstance(supply, SupplyArea) else 'AxialGroove'}(...),)."
         )
 
 

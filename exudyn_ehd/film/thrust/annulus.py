@@ -17,8 +17,6 @@ Columns lie on the edges of pads, where pressure has kinks. Pressure decays from
 ring's width L = ln(r_o / r_i), and likewise from the radii over the length of a pad. Between two edges columns are
 stretched towards both. Integrals over theta are sums over the control volumes, as the balances are. The load of the
 pressure about a step then hardly depends on the distance of the columns.
-
-End faces with oil films, and pads on them, as a scene names them.
 """
 
 from __future__ import annotations

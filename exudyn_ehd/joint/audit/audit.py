@@ -46,7 +46,7 @@ def misalignment(case: Case) -> Finding:
 
 
 def squeeze(case: Case) -> Finding:
-    """Share of the squeeze among squeeze and wedge."""
+    """Share of the squeeze term in the sum of squeeze and wedge terms."""
     is_on = case.bearing.squeeze
     return judged(
         case,

@@ -309,8 +309,9 @@ class PairBalance(HeatBalance):
             driven = k * (q - np.roll(q, -1, axis))
             carry(axis, driven, whole - driven, flow_shapes(fluid), at, limiter, ends[axis], below, content)
         stirred = self.stirred()
-        ends[:, 0, 0, ..., 0] += stirred
-        ends[:, 1, 0, ..., 0] -= stirred
+        for unknown, stored in enumerate((1.0, 1.0 / 3.0)):
+            ends[:, 0, unknown, ..., unknown] += stored * stirred
+            ends[:, 1, unknown, ..., unknown] -= stored * stirred
         self.ends = ends
         leaves, loses = (weighed(flow, at) for flow in (own.pressed, own.slides))
         if flows.areas:

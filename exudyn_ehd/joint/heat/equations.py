@@ -142,7 +142,10 @@ class HeatBalance:
         return np.zeros_like(grid.link_x) if rough else grid.link_x, grid.link_z
 
     def stirred(self) -> np.ndarray:
-        """Exchange (2, n, m) over the links in theta and z that mixes supply areas, and rows at the sides of dams."""
+        """Exchange (2, n, m) over the links in theta and z that mixes supply areas, and rows at the sides of dams.
+
+        Tilts across the film are mixed like means, a third as strongly, as they are stored.
+        """
         links = np.zeros((2, *self.store.shape))
         for area in self.flows.areas:
             links[0] += area & np.roll(area, -1, axis=0)

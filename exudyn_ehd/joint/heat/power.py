@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.bearing import MaximumGap
-from exudyn_ehd.film.heat.energy import content_rate, end_flows_around, film_flows, film_heat, outside_flows
+from exudyn_ehd.film.heat.energy import content_rate, end_flows_around, film_flows, film_heat, outside_flows, pass_on
 from exudyn_ehd.film.solvers.film import ends_of_cavities
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
@@ -115,7 +115,10 @@ class OilFlows:
         is ``outside``. In areas that mix, only the sums over the area are meaningful: single values of ``leaving`` may
         be negative.
     found, lost : (n, m) arrays
-        Where a cavitation model does not conserve mass: oil that it makes, and oil that it drops.
+        Where a cavitation model does not conserve mass: oil that it makes, and oil that it drops. Not the oil that it
+        makes on an arc as the gap of a cavity widens: `pass_on` subtracts it up to the edge at which the arc ends.
+    passed : (n, m) array
+        Oil that this edge receives less; it is contained in ``outside``.
     back : float
         Share of ``found`` that has the mixed temperature of ``lost``; the rest is fresh oil.
     areas : list of (n, m) bool arrays
@@ -158,6 +161,8 @@ class OilFlows:
             self.lines = [(np.arange(len(fixed)) == 0)[:, None] & (np.abs(film.grid.z) < film.grid.z[-1])]
             self.outside[self.lines[0]] = 0.0
         found = s.nothing if conserves else balance - self.outside
+        self.passed = s.nothing if conserves else pass_on(self.x, fx, found, film.grid.edges, film.journal.omega)
+        self.outside += self.passed
         self.found, self.lost = np.maximum(found, 0.0), np.maximum(-found, 0.0)
         self.total_found, self.total_lost = float(self.found.sum()), float(self.lost.sum())
         self.back = carry_over * min(1.0, self.total_lost / self.total_found) if self.total_found > 0.0 else 0.0
@@ -245,7 +250,7 @@ def heat_and_exchange(film: SolvedFilm, carry_over: float) -> tuple[float, float
     flows, s = OilFlows(film, carry_over), film.solver
     cavity = np.asarray(film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0)
     pressure = dropped(film) - (cavity if s.law is None else s.flow_work(cavity))
-    entering = flows.outside - s.area * flows.rate
+    entering = flows.outside - flows.passed - s.area * flows.rate
     for area in [*flows.areas, *flows.lines]:
         entering[area] += flows.found[area] - flows.lost[area]
     work = float(np.sum(pressure * entering))

@@ -209,9 +209,8 @@ class OilTemperature(abc.ABC):
         ``heat``, W, and ``store``, W/K, have the same scale. A step uses the viscosity and the heat of the extrapolated
         temperature T. Where the oil stores less per kelvin than the heat changes, the temperature would overshoot and
         swing back in the next step. There the heat is linearised about T, with the excess of its slope over the store.
-        In steps much shorter than the
-        time in which the oil is replaced, the excess is 0. In a steady state, with no store, the linearisation lets the
-        iteration converge under strong heating.
+        In steps much shorter than the time in which the oil is replaced, the excess is 0. In a steady state, with no
+        store, the linearisation lets the iteration converge under strong heating.
         """
         if not np.any(STEEPEST * heat > store):
             return 0.0

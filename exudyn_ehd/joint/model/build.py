@@ -33,7 +33,7 @@ from exudyn_ehd.solid.bush import ANCFBush, ModalBush, bore_modes
 from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
 from exudyn_ehd.solid.journal import ElasticJournal, journal_modes
 from exudyn_ehd.solid.turning_journal import FEJournal, TurningJournal
-from exudyn_ehd.status import FilmError, InputError, Status
+from exudyn_ehd.status import FilmError, InputError, Status, require_type
 
 # Largest tilt that is ignored: reduction of the gap at the ends, over the minimum film thickness. Its effect on the
 # force is of second order. Larger: tilted journals are evaluated with a larger error instead of an error message.
@@ -352,8 +352,12 @@ def build_model(bearing: JournalBearing) -> BearingModel | ImpedanceModel:
     InputError
         If the bearing is described by something else, or by an option that only a prescribed position allows.
     """
-    if not isinstance(bearing, JournalBearing):
-        raise InputError(f"CreateLubricatedJoint.bearing must be a JournalBearing(...), got {bearing!r}.")
+    require_type(
+        "CreateLubricatedJoint.bearing",
+        bearing,
+        JournalBearing,
+        hint="pads and balls have functions of their own, CreateTiltingPadBearing, CreateLubricatedSphericalJoint ...",
+    )
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError(
             "JournalBearing.inlet=MaximumGap() is for prescribed positions only: the line of maximum gap is "

@@ -254,9 +254,9 @@ class ElasticBearingModel(BearingModel):
         if travel > TILTED * self.bearing.radial_clearance:
             self._parallel = False
             warn_user(
-                f"the journal's ends tilt by {travel / self.bearing.radial_clearance:.0%} of the clearance, and "
-                f"{type(self.bearing.yielding).__name__}(tilted=False) deflects as under a parallel journal: the "
-                "minimum film thickness may be 10 % off. Take tilted=True.",
+                f"{type(self.bearing.yielding).__name__}(tilted=False) deflects as under a parallel journal, but the "
+                f"journal's ends tilt by {travel / self.bearing.radial_clearance:.0%} of the clearance: the minimum "
+                "film thickness may be 10 % off. Take tilted=True.",
                 UserWarning,
             )
 

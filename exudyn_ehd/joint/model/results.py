@@ -178,12 +178,12 @@ def passing_flows(film: SolvedFilm) -> tuple[float, float]:
     the flow at the entrance of the gap in ISO 7902, Raimondi and Boyd's Q. theta_1 is searched from the largest
     pressure, against the spin, along its row of the grid: the first vertex at an edge of an arc or of a supply area, in
     a cavity, on the line of `MaximumGap`, or with the largest gap of the row. The flow is that of the link that begins
-    there; nan without a spin. The second one is `exudyn_ehd.joint.heat.power.OilFlows.exchanged`. In a bearing of arcs
-    it is the supply flow: oil that enters at the edges of an arc is fresh.
+    there; nan without a spin. The second one is `exudyn_ehd.joint.heat.power.OilFlows.exchanged`. With a single arc it
+    is the supply flow: oil that enters at its edges is fresh.
     """
     g, p, omega = film.grid, film.parts, film.journal.omega
     flows = OilFlows(film, getattr(p.bearing.thermal, "carry_over", 1.0))
-    through = p.flow_scale * flows.exchanged if p.bearing.arc is None else float(supply_flows(film).sum())
+    through = p.flow_scale * flows.exchanged if len(g.edges) != 1 else float(supply_flows(film).sum())
     if omega == 0.0:
         return math.nan, through
     k, row = divmod(int(np.argmax(np.where(g.fixed, -math.inf, film.oil.P))), g.z.size)

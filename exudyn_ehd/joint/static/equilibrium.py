@@ -311,8 +311,8 @@ def equilibrium(
         from exudyn_ehd.joint.static.thrust_pads import equilibrium_of_pads
 
         return equilibrium_of_pads(bearing, omega, load, (tilt, axial_position, axial_load))
-    force = require_vector("equilibrium: load", load, 2, "N")  # type: ignore[arg-type]
-    b = require_vector("equilibrium: tilt", tilt, 2, "rad")
+    force = require_vector("equilibrium: load", load, 2, "N (x and y on the journal; a weight W is (0, -W))")  # type: ignore[arg-type]
+    b = require_vector("equilibrium: tilt", tilt, 2, "rad (slopes bx and by)")
     place = require_number("equilibrium: axial_position", axial_position, "m")
     size = float(np.hypot(*force))
     if size == 0.0:

@@ -161,7 +161,12 @@ class TiltingPads(Checked):
         "length": POSITIVE,
         "radial_clearance": partial(POSITIVE, hint="it is the gap at the pivots under a concentric journal."),
         "pads": partial(require_count, at_least=3, hint="a journal needs pads on all sides."),
-        "extent": partial(require_number, at_least=SMALLEST_ARC, below=math.tau, hint="it is the angle of one pad."),
+        "extent": partial(
+            require_number,
+            at_least=SMALLEST_ARC,
+            below=math.tau,
+            hint="it is the angle of one pad; use math.radians for degrees.",
+        ),
         "preload": partial(require_number, at_least=0.0, below=1.0, hint="it is 1 - c_b / c_p."),
         "pivot_offset": partial(require_number, above=0.0, below=1.0, hint="0.5 is the middle of the pad."),
         "pad_thickness": partial(NOT_NEGATIVE, hint="it is the distance from the pad's surface to its pivot."),

@@ -53,9 +53,9 @@ class ThrustResult:
     axial_position : float
         Position of the journal's centre along the axis, m.
     force, moment : (3,) arrays
-        Force, N, and moment about the joint's origin, Nm.
+        Force, N, and moment about the joint's origin, N m.
     axial_force, friction_torque : float
-        Force along z, N; torque about the bearing's axis, Nm.
+        Force along z, N; torque about the bearing's axis, N m.
     axial_stiffness, axial_damping : float
         -dF/dz, N/m, and -dF/dw, N s/m, with F along z and the axial speed w. Between plane faces at rest, a film that
         ruptures has a pressure on the closing side only. Midway between two equal faces the damping is that of one
@@ -212,6 +212,7 @@ class SteadyResult(FilmRecord, FilmPictures):
     friction_number : float
         f R / c with the coefficient of friction f = |friction_torque| / (R F); inf without a force.
     status, iterations : Status, int
+        Outcome of the film's solution; number of its linear solves, or of sweeps with `ClassicSOR`.
     fill : (n, m) array or None
         Film fraction; None for closures that do not conserve mass.
     temperature : (n, m) array, float or None
@@ -379,7 +380,7 @@ def steady(
     require_type("steady: bearing", bearing, JournalBearing)
     e = require_number("steady: eccentricity_ratio", eccentricity_ratio, at_least=0.0) * bearing.radial_clearance
     angle = require_number("steady: direction", direction, "rad")
-    b = require_vector("steady: tilt", tilt, 2, "rad")
+    b = require_vector("steady: tilt", tilt, 2, "rad (slopes bx and by)")
     v = require_vector("steady: velocity", velocity, 2, "m/s")
     omega = require_number("steady: speed", speed, "rad/s")
     w = require_number("steady: axial_speed", axial_speed, "m/s")

@@ -127,7 +127,7 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     array([0.0173, 0.0325, 0.0479])
     """
     require_type("stribeck: bearing", bearing, JournalBearing)
-    size = require_number("stribeck: load", load, "N", above=0.0)
+    size = require_number("stribeck: load", load, "N", above=0.0, hint="it is a size, the load acts along -y.")
     values = np.atleast_1d(np.array(speeds, dtype=float))
     if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values)) or not np.all(values > 0.0):
         raise InputError(

@@ -90,7 +90,7 @@ def test_asperities_that_rub_the_oil_away_are_no_film():
         with pytest.raises(ehd.FilmError, match=r"carries at least .*the bearing seizes") as error:
             ehd.equilibrium(made, speed=550.0, load=(0.0, -load))
         # a search without an end takes some times the film solves of one with
-        assert int(re.search(r"in (\d+) steps", str(error.value)).group(1)) < 300
+        assert int(re.search(r"in (\d+) steps", str(error.value)).group(1)) < 400
 
 
 @pytest.mark.parametrize("kind", ["lumped", "field"])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.heat.energy import end_flows_around, transport_slopes
+from exudyn_ehd.film.heat.energy import end_flows_around, pass_on, transport_slopes
 from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, heat_of
 from exudyn_ehd.joint.model.build import build_model, build_study_model
@@ -258,6 +258,22 @@ def test_flows_along_an_end_close(seed):
     end_flows_around(turned, pressed, stored, squeezed, full, flow, entering)
     np.testing.assert_allclose(flow - np.roll(flow, 1) + pressed + stored, entering, atol=1e-13)
     assert np.all((flow * way >= -0.02) & (np.abs(flow) <= np.abs(turned) + 0.02))
+
+
+@pytest.mark.parametrize("way", (1, -1))
+def test_a_cavity_on_an_arc_passes_on_what_it_receives(way):
+    """A gap that widens keeps the oil of its rupture, flows against the sliding stay, and the edge receives less."""
+    couette = np.array([3.0, 2.0, 3.0, 5.0, 6.0, 0.0])[:, None]
+    flow = np.array([-1.0, 2.0, 3.0, 5.0, 6.0, 0.0])[:, None]
+    found = np.array([0.0, 0.0, 1.0, 2.0, 1.0, 0.0])[:, None]
+    kept, less = np.array([-1.0, 2.0, 2.0, 2.0, 2.0, 0.0]), np.array([0.0, 0.0, 0.0, 0.0, 0.0, 4.0])
+    if way < 0:  # links i -> i+1 from the other end
+        couette, flow = -np.roll(couette[::-1], -1, axis=0), -np.roll(flow[::-1], -1, axis=0)
+        found, kept, less = found[::-1].copy(), -np.roll(kept[::-1], -1), less[::-1]
+    passed = pass_on(flow, couette, found, np.array([[0, 5]]), 300.0 * way)
+    np.testing.assert_allclose(flow[:, 0], kept)
+    np.testing.assert_allclose(passed[:, 0], less)
+    np.testing.assert_allclose(found, 0.0)
 
 
 @pytest.mark.parametrize(

@@ -113,6 +113,16 @@ def test_what_enters_at_the_edges_leaves_at_the_ends():
     assert film.supply_flows.sum() == pytest.approx(film.leakage, rel=1e-10)
 
 
+def test_flow_around_corners_grows_with_the_logarithm_of_the_grid():
+    """Every halving of the intervals adds 2 ln 2 / pi h^3 p / (12 mu) at each of the four corners."""
+    arc, flows = ehd.Arc(start=0.0, extent=2.0, leading_pressure=1e5, trailing_pressure=1e5), []
+    for n in (192, 384, 768):
+        b = bearing_on(arc, cavitation=ehd.FullSommerfeld(), film=ehd.FiniteLength(n_theta=n, n_z=n // 8))
+        flows.append(ehd.steady(b, speed=0.0, eccentricity_ratio=0.0).leakage)
+    corner = 2.0 * math.log(2.0) / math.pi * C**3 * 1e5 / (12.0 * MU)
+    np.testing.assert_allclose(np.diff(flows), 4.0 * corner, rtol=0.02)
+
+
 @pytest.mark.parametrize("cavitation", [ehd.SwiftStieber(), ehd.ElrodAdams()], ids=repr)
 def test_flows_and_friction_on_a_finer_grid(cavitation):
     """Within 0.5 % of those on 384 columns, the default grid's error; nothing enters where the film leaves."""

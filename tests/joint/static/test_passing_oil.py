@@ -71,6 +71,30 @@ def test_ends_and_edges_count_what_enters(make_bearing):
     film = ehd.steady(arc, speed=200.0, eccentricity_ratio=0.6, direction=-1.2)
     assert film.inlet_flow == pytest.approx(film.supply_flows[0], rel=1e-3)
     assert film.oil_flow == film.supply_flows.sum()
+    one = ehd.steady(make_bearing(0.5, arcs=(arc.arc,)), speed=200.0, eccentricity_ratio=0.6, direction=-1.2)
+    assert one.oil_flow == film.oil_flow
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_cavities_of_lobes_make_no_oil(make_bearing, seed):
+    """Oil that passes lobed bearings, and its heat, are nearly the same whether their cavities conserve it or not.
+
+    If fresh oil filled the widening gap of a cavity, rises would be 10 to 85 % too low, flows 5 % to nine times too
+    large. Rises are compared per power loss, because the shear of full cavities adds 5 to 50 %.
+    """
+    rng = np.random.default_rng((47, seed))
+    preload, pressure = rng.uniform(0.1, 0.6), rng.uniform(0.1e5, 1.5e5)
+    arcs = (ehd.two_lobe, ehd.three_lobe, ehd.offset_halves)[seed % 3](preload=preload, pressure=pressure)
+    at = {"eccentricity_ratio": rng.uniform(0.3, 0.7), "direction": rng.uniform(-3.0, 3.0)}
+    sense = 1.0 if seed % 3 == 2 else rng.choice((-1.0, 1.0))
+    speed, films = sense * rng.uniform(150.0, 400.0), []
+    for closure in (ehd.ElrodAdams(), ehd.SwiftStieber()):
+        options = {"cavitation": closure, "thermal": ehd.FilmEnergy(supply_temperature=313.15)}
+        films.append(ehd.steady(make_bearing(1.0, arcs=arcs, **options), speed=speed, **at))
+    exact, film = films
+    assert film.oil_flow == pytest.approx(exact.oil_flow, rel=0.08)
+    rise, expected = ((f.temperature.mean() - 313.15) / f.power_loss for f in (film, exact))
+    assert rise == pytest.approx(expected, rel=0.08)
 
 
 @pytest.mark.parametrize("options", ({}, {"inlet": ehd.MaximumGap()}, ELROD), ids=("flooded", "line", "groove"))
