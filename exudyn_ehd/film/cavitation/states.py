@@ -179,7 +179,7 @@ def add_sink_slopes(curve, slopes):
 
 
 @njit(cache=True)
-def apply_step(kind, nonlinearity, curves, order, count, dx, full, u, P):
+def apply_step(kind, nonlinearity, curves, halves, order, count, dx, full, u, P):
     """Take Newton's step dx (count,), of pressures where ``full``, else of fills; ``curves``: ``whole`` of the module.
 
     The step of a vertex that crosses u = 0 ends there, and the vertex becomes full or cavitated. A step that crosses
@@ -189,6 +189,8 @@ def apply_step(kind, nonlinearity, curves, order, count, dx, full, u, P):
 
     Parameters
     ----------
+    halves : bool
+        Whether a step on a curve to u < 0 halves u instead: else two vertices may leave and join a film by turns.
     nonlinearity : tuple
         Weight of a relative change of density or gap, where a change of u on a curve has the weight 1; these relative
         changes (n, m) per unit of P; P at which the oil's law ends; p' and p'' of the law (2, n m); Pa per unit of P.
@@ -243,6 +245,8 @@ def apply_step(kind, nonlinearity, curves, order, count, dx, full, u, P):
             crosses = kind >= RUPTURE and new < -BOUND_TOLERANCE * peak
         else:
             new = old + 0.5 * change / (whole * min(max(old, SMALLEST_S), 1.0))
+            if new < 0.0 and halves and old > SMALLEST_S:
+                new, changes = 0.5 * old, changes + 1
             size = abs(min(new, 1.0) - min(old, 1.0))
             nonlinear_change, matrix_change = (
                 max(nonlinear_change, size),

@@ -200,14 +200,14 @@ def _judge(film, kind, tolerance, stored, is_last, full, state, residual, progre
 
 
 @njit(cache=True, inline="always")
-def _take_step(kind, nonlinearity, whole, matrix, size, is_first, fresh, x, full, state, residual, progress):
+def _take_step(kind, nonlinearity, whole, halves, matrix, size, is_first, fresh, x, full, state, residual, progress):
     """Take Newton's step; returns (whether it is finite, number of vertices that become full or cavitated or cross the
     end of the oil's law, progress).
 
     Parameters
     ----------
-    nonlinearity : tuple
-        Argument of `apply_step`.
+    nonlinearity, halves : tuple, bool
+        Arguments of `apply_step`.
     size : (int, int)
         Number of unknowns, half-bandwidth.
     is_first, fresh : bool
@@ -220,7 +220,7 @@ def _take_step(kind, nonlinearity, whole, matrix, size, is_first, fresh, x, full
     if count > 0:
         solve_step(lower, dense_band(upper, count, width), inv_diag, count, width, x)
     changes, largest_change, nonlinear_change, matrix_change = apply_step(
-        kind, nonlinearity, whole, order, count, x, full, state[0], state[1]
+        kind, nonlinearity, whole, halves, order, count, x, full, state[0], state[1]
     )
     same_unknowns = (same_unknowns or fresh) and changes == 0
     if fresh:
@@ -287,9 +287,9 @@ def proceed(norm, gap, course, kind, pc, full, state, oil, density, film, feedba
         return outcome, (step, fresh, halvings, fraction, limit, count, width, progress)
     if feedback is not None:
         before[0][:], before[1][:], before[2][:] = u, full, above
-    is_first, size = step == 0, (count, width)
+    is_first, halves, size = step == 0, step >= TIGHT_STEPS, (count, width)
     ok, changes, progress = _take_step(
-        kind, nonlinearity, film[3][4], matrix, size, is_first, fresh, x, full, state, residual, progress
+        kind, nonlinearity, film[3][4], halves, matrix, size, is_first, fresh, x, full, state, residual, progress
     )
     if not ok:
         return LOST, course

@@ -257,3 +257,25 @@ def test_pictures_show_the_arc_alone():
     with pytest.raises(ehd.InputError, match=r"no contact pressure; .* Films of joints have it"):
         film.plot_contact_pressure()
     assert len(ring_triangles(5, 3, last=[1, 4])) == len(ring_triangles(5, 3)) - 8
+
+
+@pytest.mark.slow
+def test_vertices_that_would_leave_and_join_a_film_by_turns():
+    """A pressure dam that heats: two vertices at the line, each of which is in the film only without the other."""
+    heat = ehd.FilmEnergy(supply_temperature=313.15, conductivity=0.13, bush_coefficient=1e3, journal_coefficient=200.0)
+    dam = ehd.pressure_dam(depth=50e-6, step_angle=2.3, length=0.013)
+    oil = ehd.oil("ISO VG 46")
+    model = build_model(
+        ehd.JournalBearing(journal_radius=0.02, length=0.02, radial_clearance=C, lubricant=oil, arcs=dam, thermal=heat)
+    )
+
+    def motion(t):
+        angle, rate = 0.3 * math.sin(300.0 * t) - 1.0, 90.0 * math.cos(300.0 * t)
+        c, s = 0.5 * C * math.cos(angle), 0.5 * C * math.sin(angle)
+        return np.array([c, s, 0.0, 0.0, -rate * s, rate * c, 0.0, 0.0, 500.0, 0.0])
+
+    history = model.initial_history(motion(0.0))
+    for k in range(1, 40):
+        film = model.evaluate(motion(5e-5 * k), history, 5e-5)
+        assert film.iterations < 60
+        history = film.history()
