@@ -274,7 +274,7 @@ def test_errors_of_the_new_joint_name_the_old_one():
         ehd.ReplaceJoints(mbs, bearing=BEARING)
     mbs, joints = chain(1)
     with pytest.raises(
-        ehd.InputError, match=rf"object {int(joints[0])} 'pivot 0' .*CreateLubricatedJoint\.bearing must be a Jou"
+        ehd.InputError, match=rf"object {int(joints[0])} 'pivot 0' .*CreateLubricatedJoint\.bearing must be Jou"
     ):
         ehd.ReplaceJoints(mbs, bearing=lambda number: ehd.FiniteLength())
 

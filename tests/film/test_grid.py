@@ -95,7 +95,7 @@ def test_slider_grid():
 def test_validation(spec, options):
     with pytest.raises(InputError, match=rf"{spec.__name__}\.{next(iter(options))}"):
         spec(**options)
-    with pytest.raises(TypeError):
+    with pytest.raises(InputError, match=rf"{spec.__name__} takes its arguments by name, n_theta=\.\.\., got 96"):
         spec(96, 10)
 
 

@@ -397,9 +397,12 @@ CLASSIC = {"film": ehd.ClassicSOR(), "cavitation": ehd.Gumbel()}
                 "film": ehd.ClassicSOR(),
                 "cavitation": ehd.Gumbel(),
             },
-            "ClassicSOR.*no roughness",
+            "ClassicSOR.*without roughness",
         ),
-        ({"turbulence": ehd.NgPan(), "film": ehd.ClassicSOR(), "cavitation": ehd.Gumbel()}, "ClassicSOR.*no roughness"),
+        (
+            {"turbulence": ehd.NgPan(), "film": ehd.ClassicSOR(), "cavitation": ehd.Gumbel()},
+            "ClassicSOR.*without roughness",
+        ),
         (
             {
                 "lubricant": ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson()),
