@@ -161,7 +161,8 @@ class OilFlows:
             self.lines = [(np.arange(len(fixed)) == 0)[:, None] & (np.abs(film.grid.z) < film.grid.z[-1])]
             self.outside[self.lines[0]] = 0.0
         found = s.nothing if conserves else balance - self.outside
-        self.passed = s.nothing if conserves else pass_on(self.x, fx, found, film.grid.edges, film.journal.omega)
+        makes_oil = film.grid.edges.size and not conserves
+        self.passed = pass_on(self.x, fx, found, film.grid.edges, film.journal.omega) if makes_oil else s.nothing
         self.outside += self.passed
         self.found, self.lost = np.maximum(found, 0.0), np.maximum(-found, 0.0)
         self.total_found, self.total_lost = float(self.found.sum()), float(self.lost.sum())
