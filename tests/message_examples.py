@@ -800,9 +800,12 @@ joint = ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bearing)
 mbs.SetNodeParameter(0, "initialCoordinates", [0, -3e-5, 0, 0, 0, 0])
 mbs.Assemble(); joint.film()
 
-settings.timeIntegration.numberOfSteps, kept = 600, {"record": ehd.File(path="both.rows")}
-for name in ("left", "right"): ehd.CreateLubricatedJoint(mbs, name, sides, centre, z, bearing, **kept)
-mbs.Assemble(); ehd.SolveDynamic(mbs, settings)
+record = ehd.File(path="both.rows")
+for name in ("left", "right"): ehd.CreateLubricatedJoint(mbs, name, sides, centre, z, bearing, record=record)
+
+settings.timeIntegration.numberOfSteps, kept = 600, {"record": ehd.File(path="{name}.rows")}
+left, _ = [ehd.CreateLubricatedJoint(mbs, name, sides, centre, z, bearing, **kept) for name in ("left", "right")]
+mbs.Assemble(); ehd.SolveDynamic(mbs, settings); Path("right.rows").replace("left.rows"); left.history.time
 
 (folder := Path("rows")).mkdir()
 ehd.CreateLubricatedJoint(mbs, "main", sides, centre, z, bearing, record=ehd.File(path=folder / "main"))

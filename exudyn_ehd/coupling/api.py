@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import pathlib
 from collections.abc import Sequence
 from typing import Literal, TypeAlias, cast, overload
 
@@ -23,7 +24,7 @@ from exudyn_ehd.coupling.items.joint_frame import check_start, hold, move_to_sta
 from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_surfaces
 from exudyn_ehd.coupling.record.rows import Every, File, Period
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.solve import register_joint, require_new
+from exudyn_ehd.coupling.run.solve import joints_of, register_joint, require_new
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector, warn_user
@@ -233,6 +234,8 @@ def CreateLubricatedJoint(
     if bearing is None:
         raise InputError(f"{_WHERE}.bearing is missing; give a JournalBearing(...).")
     name = name or f"lubricated joint {mbs.systemData.NumberOfObjects()}"
+    if isinstance(record, File):
+        _require_new_file(mbs, record.of(name).absolute())
     housing, journal, points, rotation = place_joint(
         _WHERE, mbs, itemNumbers, position, axis, rotationMatrixAxes, useGlobalFrame
     )
@@ -273,6 +276,15 @@ def require_arguments(
         require_type(f"{where}.{argument}", motion, Free, Held)
     require_of_joint(f"{where}.stepControl", control)
     require_new(where, mbs, name)
+
+
+def _require_new_file(mbs: exu.MainSystem, path: pathlib.Path) -> None:
+    """Raise `InputError` for a file into which another lubricated joint of the system writes its rows."""
+    if path in {joint.element.steps.record.path for joint in joints_of(mbs)}:
+        raise InputError(
+            f"{_WHERE}.record: another joint of the system writes its rows to '{path}'; put {{name}} into the path of "
+            "File(...), which stands for the joint's name, or name another file."
+        )
 
 
 def equip(joint: Joint, control: StepControl | None, record: RecordOption | None = None) -> None:

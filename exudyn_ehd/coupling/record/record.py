@@ -82,6 +82,11 @@ class Record:
         self._disk = RowsOnDisk(path, joint)
 
     @property
+    def path(self) -> pathlib.Path | None:
+        """File of the rows; None if they stay in memory."""
+        return None if self._disk is None else self._disk.path
+
+    @property
     def is_thinned(self) -> bool:
         """Return whether rows are dropped."""
         return self._thinner.rule is not None

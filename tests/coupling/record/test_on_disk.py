@@ -187,11 +187,18 @@ ehd.SolveDynamic(mbs, settings(1000))
     assert ehd.load_history(tmp_path / "main.rows").time.size == 0
 
 
+def test_a_file_of_two_joints_is_refused(tmp_path):
+    with pytest.raises(ehd.InputError, match=r"record: another joint .*both\.rows'; put \{name\} into the path"):
+        model("left", "right", record=ehd.File(path=tmp_path / "both.rows"))
+
+
 @pytest.mark.slow
-def test_a_file_of_two_joints_is_told(tmp_path):
-    mbs, _ = model("left", "right", record=ehd.File(path=tmp_path / "both.rows"))
-    with pytest.raises(ehd.EHDError, match=r"'(left|right)': another record has replaced.*'\{name\}' in it"):
+def test_a_file_that_another_system_replaces_is_told(tmp_path):
+    systems = [model("both", record=ehd.File(path=tmp_path / "{name}.rows")) for _ in range(2)]
+    for mbs, _ in systems:
         ehd.SolveDynamic(mbs, settings(600))
+    with pytest.raises(ehd.EHDError, match=r"'both': another record has replaced.*'\{name\}' in it"):
+        _ = systems[0][1][0].history.time
 
 
 def test_what_is_no_record_is_not_replaced(tmp_path):
