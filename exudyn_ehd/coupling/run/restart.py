@@ -29,7 +29,7 @@ from exudyn_ehd.joint.time_step import StepStart
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 from exudyn_ehd.storage import read_arrays, replacing, require_path
 
-_FORMAT = "exudyn_ehd SystemState 9"
+_FORMAT = "exudyn_ehd SystemState 10"
 Part = TypeVar("Part", History, StepStart)
 _PARTS = ("ODE2", "ODE2_t", "ODE1", "AE", "Data")
 
