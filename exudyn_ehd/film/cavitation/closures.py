@@ -252,9 +252,9 @@ class ElrodAdams(_Ruptures):
     differs from their sum by at most half of a step's change of the gap, which does not accumulate over steps.
 
     Oil content is transported with second order along theta. In five journals under loads that turn, the orbit on 96
-    columns is within 2 % of the film thickness of that on 384 (``tests/mechanisms/test_oil_in_time.py``). The order
-    in time is the second as well: the orbit of a rotor with an unbalance is 0.4 % off with 120 steps per turn
-    (``tests/coupling/rotor/test_solve.py``), unless a step carries oil over more than a column.
+    columns is within 2 % of the film thickness of that on 384 (``tests/mechanisms/test_oil_in_time.py``). The order in
+    time is the second as long as a step carries the oil over less than a column: with 120 steps per turn the orbit of a
+    rotor with an unbalance is 0.4 % off (``tests/coupling/rotor/test_solve.py``).
 
     With ``line_in_cells=True`` (default grid, eccentricity ratio 0.6 to 0.9, L/D 0.5 and 1) the error of steady
     stiffness falls from 9 to 1.5 %, in two to three times the time. Damping depends on the direction of the load, by

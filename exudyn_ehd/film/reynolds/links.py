@@ -44,12 +44,11 @@ the rise in the middle of the step, extrapolated by its rate in the step before,
 step carries C times the content away, this rate counts ``1 - C`` times, and not for C > 1: the order in time is the
 second, and no wave grows for any C. With the whole rate some would from C = 0.5 on.
 
-Fills have a kink at a rupture line and jump at a
-reformation line, which crosses its cell while the void of the vertex there shrinks. Where the void on either side of a
-vertex is below half of its own, the rise is reduced in proportion, to 0 beside a full vertex. Elsewhere it is linear in
-the fills. With a limiter of total variation, stiffness and damping of small motions would differ between directions.
-Between -0.45 late and 0.45 (1 - late) the rise leaves the fill of the flow between 0 and 1. If a step carries C times
-the content away, no wave grows for any C. Along z the order is the first.
+Fills have a kink at a rupture line, and jump at a reformation line. The void of the vertex in whose cell such a line
+lies shrinks while the line crosses the cell. Where the void on either side of a vertex is below half of its own, the
+rise is therefore reduced in proportion, to 0 beside a full vertex. Elsewhere it is linear in the fills. With a limiter
+of total variation, stiffness and damping of small motions would differ between directions. Between -0.45 late and
+0.45 (1 - late) the rise leaves the fill of the flow between 0 and 1. Along z the order is the first.
 
 The equations of a steady film contain only the fills of its flows. Those of the vertices follow from them
 (`move_upstream`), so that a run which begins with a steady film stays there. The shear in a cavity has the fills of the
