@@ -2,7 +2,7 @@
 
 A journal (R 25 mm, L 50 mm, 5 kg, with a flywheel) turns at 3000 rpm on thin oil under a load of 8 kN downwards and an
 unbalance of 5 kN that turns with it. It begins in the middle of its bore and runs until its orbit has closed within a
-thousandth of the clearance, after 13 turns. The pictures show the last two of them. The numbers are made up; nothing is
+thousandth of the clearance, after 12 turns. The pictures show the last two of them. The numbers are made up; nothing is
 compared.
 
 Run ``python examples/reading_results.py``; everything is written to ``results/reading_results``.
