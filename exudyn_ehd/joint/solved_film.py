@@ -59,7 +59,7 @@ class History:
     mass : (n, m) array or None
         Scaled oil at the vertices as the sum of all flows. It balances the flows to round-off and differs from the
         content as `exudyn_ehd.film.solvers.solver.FilmSolver.keep` explains. No film depends on it.
-    outflow : (5, n, m) array or None
+    outflow : (4, n, m) array or None
         Fields of `exudyn_ehd.film.reynolds.links.outflow_of` for the step (mass-conserving closures).
     wear : (n, m) array or None
         Scaled wear depth of the bore.

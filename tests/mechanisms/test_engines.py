@@ -268,11 +268,18 @@ def two_cylinders(steps, rho):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("steps", "tolerance"), [(180, 0.10), (360, 0.02)])
+@pytest.mark.parametrize(
+    ("steps", "tolerance"),
+    [
+        pytest.param(180, 0.10, marks=pytest.mark.filterwarnings("ignore::exudyn_ehd.status.RingingWarning")),
+        (360, 0.02),
+    ],
+)
 def test_two_cylinders(steps, tolerance):
     """Seven films in steps of two degrees and of one; none is thrown through its wall, hardly a step is halved.
 
-    The gas comes up within 18 steps of two degrees: these miss the first peak by 7 %, those of one degree by 1 %.
+    The gas comes up within 18 steps of two degrees: these miss the first peak by 7 %, and the force of a pin alternates
+    while it does, which a warning tells. Those of one degree miss it by 1 %.
     """
     histories = two_cylinders(steps, 0.9)
     for name, (lowest_film, peak) in TWO_CYLINDERS.items():

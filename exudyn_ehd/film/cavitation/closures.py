@@ -252,9 +252,9 @@ class ElrodAdams(_Ruptures):
     differs from their sum by at most half of a step's change of the gap, which does not accumulate over steps.
 
     Oil content is transported with second order along theta. In five journals under loads that turn, the orbit on 96
-    columns is within 2 % of the film thickness of that on 384 (``tests/mechanisms/test_oil_in_time.py``). The order in
-    time is the second as long as a step carries the oil over less than a column: with 120 steps per turn the orbit of a
-    rotor with an unbalance is 0.4 % off (``tests/coupling/rotor/test_solve.py``).
+    columns is within 2 % of the film thickness of that on 384 (``tests/mechanisms/test_oil_in_time.py``). The error by
+    the time steps is of first order: orbits of a rotor with an unbalance are 2 % too small or large with 120 steps per
+    turn, 1 % with 240 (``tests/coupling/rotor/test_solve.py``).
 
     With ``line_in_cells=True`` (default grid, eccentricity ratio 0.6 to 0.9, L/D 0.5 and 1) the error of steady
     stiffness falls from 9 to 1.5 %, in two to three times the time. Damping depends on the direction of the load, by
@@ -322,9 +322,8 @@ class FilmSystem:
     prompt, late : (n, m) arrays
         Couette flows carry the fill ``prompt fill + late``, see `exudyn_ehd.film.reynolds.links`; 1 and 0 if it is not
         averaged over the step.
-    rise, rose : (n, m) arrays
-        Part of ``late``: rise of the fill from the vertex to the links downstream, 0 in a steady film; that at the
-        start of the step.
+    rise : (n, m) array
+        Part of ``late``: rise of the fill from the vertex to the links downstream, 0 in a steady film.
     inverse_step : float
         1 / time step since ``mass_old``, 1/s; 0: steady.
     closes : bool
@@ -369,7 +368,7 @@ class FilmSystem:
         self.closes, self.turns = False, 0.0
         empty = np.ones(shape if kind == OIL else (0, 0))
         self.fill, self.mass_old = empty, empty.copy()
-        self.prompt, (self.late, self.rise, self.rose) = self.terms.prompt, np.zeros((3, *shape))
+        self.prompt, self.late, self.rise = self.terms.prompt, np.zeros(shape), np.zeros(shape)
         self.prompt[:] = 1.0
         self.line: RuptureLine | None = None
         self.column_line: ColumnLine | None = None

@@ -14,8 +14,8 @@ With an effect (flow factors of rough surfaces, shear thinning, a temperature fi
 Symbols: H (n, m) gap at vertices, HF (n, m) gap on the link i -> i+1, kx / kz link conductances with their metric, fx /
 fz Couette fluxes with their metric, b right-hand side of ``A P = b``, P scaled pressure.
 
-Couette flows out of a cavity: transport of second order in time and space
---------------------------------------------------------------------------
+Couette flows out of a cavity: transport of second order along theta
+--------------------------------------------------------------------
 With the void ``v = H - fill H`` and the transport speed U, the mass balance of a film reads
 
     dv/dt + div (U v) = dH/dt + div (U H) + div (pressure flow).
@@ -40,9 +40,9 @@ The fill of a vertex would carry the oil with an error of first order in the len
 the oil content along theta, most where the oil moves slowly against the cavity, as in whirl at half of the speed. So
 ``late`` also holds the rise of the fill from the vertex to the middle of the link downstream in theta, extrapolated
 from the vertex upstream (upwind differences of second order: R. F. Warming, R. M. Beam, AIAA J. 14 (1976) 1241). It is
-the rise in the middle of the step, extrapolated by its rate in the step before, so that the equations stay linear. If a
-step carries C times the content away, this rate counts ``1 - C`` times, and not for C > 1: the order in time is the
-second, and no wave grows for any C. With the whole rate some would from C = 0.5 on.
+the rise at the start of the step, so that the equations stay linear, and the error in time is of first order. If a step
+carries C times the content away, no wave grows for any C. The rise in the middle of the step, extrapolated by its rate,
+would be of second order, but lets coarse steps ring.
 
 Fills have a kink at a rupture line, and jump at a reformation line. The void of the vertex in whose cell such a line
 lies shrinks while the line crosses the cell. Where the void on either side of a vertex is below half of its own, the
@@ -280,8 +280,8 @@ def set_links(H, HF, flow, metric, vx, vz, terms):
     _set_along(I1, h, next_values(h, I1), flow, by, vz, out)
 
 
-# Largest part of a vertex's content that ``late`` may carry away in a step, and largest rise over its bounds. Larger
-# values than 0.5 allow negative fills; smaller ones damp short waves more and are less accurate.
+# Largest w, and largest part of a vertex's content that ``late`` may carry away in a step. The value 0.5 would be of
+# exactly second order, but would not damp short waves; smaller ones damp more and are less accurate.
 LARGEST_LAG = 0.45
 
 
@@ -311,13 +311,13 @@ def _share_of_rise(fx, fz, fill, links, i, j):
 
 @njit(cache=True)
 def outflow_of(fx, fz, H, H_t, area, links, fill):
-    """Return fields (5, n, m) for the next step: fill; rate of the gap over the gap, 1/s; Couette outflow of a full
-    film over its volume, 1/s; rise of the fill to the middles of the links downstream; 0, for its rate, 1/s.
+    """Return fields (4, n, m) for the next step: fill; rate of the gap over the gap, 1/s; Couette outflow of a full
+    film over its volume, 1/s; rise of the fill to the middles of the links downstream.
 
     ``links`` (n,): inverse lengths of the links in theta. A vertex with a line has the fill 1.
     """
     n, m = fill.shape
-    out = np.zeros((5, n, m))
+    out = np.empty((4, n, m))
     for i in range(n):
         for j in range(m):
             volume, own = area[i, j] * H[i, j], fill[i, j]
@@ -332,7 +332,7 @@ def outflow_of(fx, fz, H, H_t, area, links, fill):
 
 @njit(cache=True)
 def move_upstream(fx, fz, links, out):
-    """Change fill and rise in the result (5, n, m) of `outflow_of`, from the fills of a steady film, which are those
+    """Change fill and rise in the result (4, n, m) of `outflow_of`, from the fills of a steady film, which are those
     of its flows, to fills of the vertices; their sum is kept.
 
     Sweeps go with the flow. On equal columns each one reduces the error to a third per column.
@@ -401,7 +401,6 @@ def lag_void(outflow, step, fixed, prompt_out, late_out, rise_out):
             if fixed[i, j] or fill >= 1.0 or not min(fill, fill + grows) > 0.0:
                 continue
             late = (fill + grows) / (1.0 + grows)
-            w = min(0.5, late / fill, fill / late * min(1.0, LARGEST_LAG / max(drains, LARGEST_LAG)))
-            rise = outflow[3, i, j] + 0.5 * step * max(1.0 - drains, 0.0) * outflow[4, i, j]
-            rise_out[i, j] = min(max(rise, -LARGEST_LAG * late), LARGEST_LAG * (1.0 - late))
+            w = min(LARGEST_LAG, late / fill, fill / late * min(1.0, LARGEST_LAG / max(drains, LARGEST_LAG)))
+            rise_out[i, j] = min(max(outflow[3, i, j], -LARGEST_LAG * late), LARGEST_LAG * (1.0 - late))
             prompt_out[i, j], late_out[i, j] = 1.0 - w, w * late + rise_out[i, j]

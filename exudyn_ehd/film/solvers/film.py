@@ -304,7 +304,7 @@ class FilmArrays:
             s.mass_old[:] = mass_old
 
     def memory(self, mass: np.ndarray | None, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what the next step needs of the last solution and its step, (n, m), (n, m) and (5, n, m).
+        """Return what the next step needs of the last solution and its step, (n, m), (n, m) and (4, n, m).
 
         The void at the end of the step; the sum of oil flows: ``mass`` at its start plus the change of content in the
         step; fields of `exudyn_ehd.film.reynolds.links`. There a vertex at a line inside the cells counts as full,
@@ -313,12 +313,10 @@ class FilmArrays:
         s, (flows, outflow), content = self.system, self._outflow(), self.content
         if s.inverse_step == 0.0:
             content = content + self.rho * (outflow[0] - flows) * self.H
-        elif step > 0.0 and self.lagging:
-            outflow[4] = (outflow[3] - s.rose) / step
         return self.H - content, content if mass is None or step <= 0.0 else mass + content - s.mass_old, outflow
 
     def _outflow(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the fills (n, m) of the last solution, and the fields (5, n, m) for the next step."""
+        """Return the fills (n, m) of the last solution, and the fields (4, n, m) for the next step."""
         s, line, links = self.system, self.oil_line, self.grid.link_x
         fill = s.fill if line is None else np.where(line.s < 1.0, 1.0, s.fill)
         outflow = outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, links, fill)
@@ -337,15 +335,15 @@ class FilmArrays:
 
     def flooded(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the result of `memory` for a full film at the present gaps, without flows so far."""
-        return self.nothing, self.H.copy(), np.array([self.ones, *4 * [self.nothing]])
+        return self.nothing, self.H.copy(), np.array([self.ones, self.nothing, self.nothing, self.nothing])
 
     def lag(self, outflow: np.ndarray | None, step: float) -> None:
-        """Average the next solution's flows out of cavities over its step, from ``outflow`` (5, n, m) at its start;
+        """Average the next solution's flows out of cavities over its step, from ``outflow`` (4, n, m) at its start;
         None: no average."""
         s = self.system
         if outflow is not None:
             lag_void(outflow, step, s.fixed, s.prompt, s.late, s.rise)
-            self.lagging, s.rose[:] = True, outflow[3]
+            self.lagging = True
         elif self.lagging:
             s.prompt[:], s.late[:], s.rise[:] = 1.0, 0.0, 0.0
             self.lagging = False

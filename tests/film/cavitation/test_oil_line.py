@@ -38,7 +38,7 @@ def _start(film, seed):
     if mass is not None and rng.random() < 0.5:
         drains = abs(known[0]) / 0.3 * rng.random(shape)
         rises = rng.uniform(-1.0, 1.0, shape)
-        film.lag(np.stack((mass / film.H, film.H_t / film.H, drains, rises, film.nothing)), step)
+        film.lag(np.stack((mass / film.H, film.H_t / film.H, drains, rises)), step)
     return (*known, mass, step)
 
 
