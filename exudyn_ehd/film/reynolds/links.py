@@ -280,8 +280,9 @@ def set_links(H, HF, flow, metric, vx, vz, terms):
     _set_along(I1, h, next_values(h, I1), flow, by, vz, out)
 
 
-# Largest w, and largest part of a vertex's content that ``late`` may carry away in a step. The value 0.5 would be of
-# exactly second order, but would not damp short waves; smaller ones damp more and are less accurate.
+# Largest w, largest part of a vertex's content that ``late`` without the rise may carry away in a step, and largest
+# rise over its bounds. With w = 0.5 the void would be averaged to second order, but short waves not damped; smaller
+# values damp more and are less accurate.
 LARGEST_LAG = 0.45
 
 

@@ -1,5 +1,6 @@
 """The void of a mass-conserving film in time: squeeze of full films, balance of the oil, order, long runs."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -128,6 +129,28 @@ def test_tangent_is_exact_in_a_moving_film():
             if errors[-1] < 1e-6:
                 break
         assert min(errors) < 1e-6
+
+
+@pytest.mark.parametrize("columns", (0.02, 0.2, 0.5, 0.9, 1.2, 2.0, 5.0, 40.0))
+@pytest.mark.parametrize("way", (1.0, -1.0))
+def test_waves_of_oil_content_fade(columns, way):
+    """Random oil content in a journal at rest, by the columns over which a step carries the oil: no wave of it grows,
+    and after eight turns of the shaft the film is the steady one."""
+    model = make(ehd.ElrodAdams(cavity_pressure=-1e5))
+    still = np.array([0.7 * C, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, way * OMEGA, 0.0])
+    steady, rng = model.evaluate(still), np.random.default_rng(5)
+    force, begin = steady.wrench[:2].copy(), steady.history()
+    step = columns * TURN * 2.0 / 24
+    void = np.maximum(begin.void * rng.uniform(0.6, 1.4, begin.void.shape), 0.0)
+    history, apart, largest = dataclasses.replace(begin, void=void), [], np.abs(begin.void).max()
+    for _ in range(max(60, math.ceil(8 * TURN / step))):
+        film = model.evaluate(still, history, step)
+        assert film.status is ehd.Status.CONVERGED
+        history = film.history()
+        apart.append(np.abs(history.void - begin.void).max() / largest)
+    assert max(apart) < 0.6
+    assert apart[-1] < 1e-3
+    assert np.abs(film.wrench[:2] - force).max() < 1e-3 * np.abs(force).max()
 
 
 @pytest.mark.slow

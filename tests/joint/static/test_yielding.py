@@ -216,6 +216,7 @@ def test_response_of_a_bore_and_of_its_cavity_is_that_in_time(surface, periods, 
     coarse, fine = (forced_with_bore(made, rest, 500.0, steps, periods) for steps in (80, 160))
     (found,), (hard,) = (r.dynamic_stiffness([500.0]) for r in (rest, other))
     assert np.abs(found - (2.0 * fine - coarse)).max() < 1e-2 * np.abs(found).max()
+    # the deflection changes Z by 0.037 at least: three times the limit of the error
     assert np.abs(found - hard).max() > 0.03 * np.abs(found).max()
 
 
@@ -223,15 +224,14 @@ def test_response_of_a_bore_and_of_its_cavity_is_that_in_time(surface, periods, 
 @pytest.mark.parametrize("closure", [ELROD, pytest.param(IN_CELLS, marks=pytest.mark.slow)], ids=["vertices", "cells"])
 @pytest.mark.parametrize("surface", ["pin", pytest.param("bush", marks=pytest.mark.slow)])
 def test_hard_bores_respond_as_rigid_ones_with_a_cavity(surface, closure):
-    """A thousand times as hard as steel: what yields is a thousandth of what changes Z by a fifth, or the frequency at
-    which stiffness and damping are taken."""
-    hard = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e14, poisson_ratio=0.3, density=7800.0)
+    """Ten thousand times as hard as steel, which halves some coefficients: what is left is 1e-4 of them."""
+    hard = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e15, poisson_ratio=0.3, density=7800.0)
     options = {name: dataclasses.replace(part, material=hard) for name, part in SURFACES[surface].items()}
     made = dataclasses.replace(bearing("rigid", **closure), **options)
     found, rigid = (ehd.equilibrium(b, speed=SPEED, load=(2000.0, 0.0)) for b in (made, bearing("rigid", **closure)))
     for name in ("stiffness", "damping", "frequency", "whirl_ratio", "critical_mass"):
         expected = getattr(rigid, name)
-        assert np.abs(getattr(found, name) - expected).max() < 1.2e-3 * np.abs(expected).max(), name
+        assert np.abs(getattr(found, name) - expected).max() < 2e-4 * np.abs(expected).max(), name
     slow = found.dynamic_stiffness([0.0])[0]
     assert np.abs(slow - found.settled_stiffness).max() < 1e-6 * np.abs(slow).max()
 
