@@ -279,8 +279,5 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         """Table of the whole revolutions up to now; see `JointHistory.revolutions`."""
         return self.history.revolutions(period=period)
 
-    def _title(self) -> str:
-        return self.name
-
     def _film(self) -> FilmFields:
         return self.film()

@@ -90,16 +90,11 @@ def field_values(film: FilmRecord, field: MapField) -> np.ndarray:
     return np.broadcast_to(np.asarray(values, dtype=float), film.pressure.shape)
 
 
-def _around(theta: np.ndarray, values: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """Values (k, m) at angles (k,) of a field on a closed ring."""
-    return np.stack([np.interp(angles, theta, column, period=math.tau) for column in values.T], axis=1)
-
-
 def resampled(film: FilmRecord, values: np.ndarray, angles: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Field on the grid of angles (k,) and places (l,) along the axis, linear between vertices; nan between arcs."""
     rows, arcs = np.stack([np.interp(along, film.z, row) for row in values]), film.bearing.bore_arcs
     if len(arcs) < 2:
-        return _around(film.theta, rows, angles)
+        return np.stack([np.interp(angles, film.theta, column, period=math.tau) for column in rows.T], axis=1)
     out = np.full((angles.size, along.size), np.nan)
     for part in columns_of_arcs(film.theta, arcs):
         first, last = film.theta[part][[0, -1]]

@@ -3,27 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, cast
+from enum import Enum
+from typing import Any, cast
 
-from exudyn_ehd.pictures.records import FilmRecord, HistoryRecord, Target
+import numpy as np
 
-if TYPE_CHECKING:
-    from enum import Enum
-
-    import numpy as np
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.projections.polar import PolarAxes
+from exudyn_ehd.pictures.records import Axes, Figure, FilmRecord, HistoryRecord, PolarAxes, Target
 
 
-class Titled:
-    """Objects that may have a name, which is the title of their pictures."""
-
-    def _title(self) -> str:
-        return ""
+def _title_of(item: object) -> str:
+    """Name of a joint, which is the title of its pictures; empty for anything else."""
+    return getattr(item, "name", "")
 
 
-class FilmPictures(Titled):
+class FilmPictures:
     """Pictures of a film at one instant; mixed into a `pictures.records.FilmRecord`, or into what has one by `_film`.
 
     Every method draws into ``ax`` if given (a matplotlib Axes, so that pictures can be combined) or into a figure of
@@ -69,7 +62,7 @@ class FilmPictures(Titled):
         """
         from exudyn_ehd.pictures.bush import plot_bearing
 
-        return plot_bearing(self._film(), camera=camera, title=self._title(), ax=ax, path=path)
+        return plot_bearing(self._film(), camera=camera, title=_title_of(self), ax=ax, path=path)
 
     def _film(self) -> FilmRecord:
         """Return the film to draw."""
@@ -78,10 +71,10 @@ class FilmPictures(Titled):
     def _map(self, field: str, ax: Axes | None, path: Target) -> Figure:
         from exudyn_ehd.pictures import maps
 
-        return maps.plot_map(self._film(), maps.FIELDS[field], title=self._title(), ax=ax, path=path)
+        return maps.plot_map(self._film(), maps.FIELDS[field], title=_title_of(self), ax=ax, path=path)
 
 
-class HistoryPictures(Titled):
+class HistoryPictures:
     """Pictures of a history; mixed into a `pictures.records.HistoryRecord`, or into what has one by `_history`.
 
     See `FilmPictures`.
@@ -95,7 +88,7 @@ class HistoryPictures(Titled):
         """
         from exudyn_ehd.pictures.histories import plot_orbit
 
-        return plot_orbit(self._history(), ends=ends, text=text, title=self._title(), ax=ax, path=path)
+        return plot_orbit(self._history(), ends=ends, text=text, title=_title_of(self), ax=ax, path=path)
 
     def plot_load(self, *, text: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
         """Polar diagram of the load of the journal on the bush, in the housing's joint frame.
@@ -105,7 +98,7 @@ class HistoryPictures(Titled):
         """
         from exudyn_ehd.pictures.histories import plot_load
 
-        return plot_load(self._history(), text=text, title=self._title(), ax=ax, path=path)
+        return plot_load(self._history(), text=text, title=_title_of(self), ax=ax, path=path)
 
     def plot_traces(
         self, quantities: Enum | str | Sequence[Enum | str] = ("minimum_gap", "peak_pressure"), **options: Any
@@ -118,7 +111,7 @@ class HistoryPictures(Titled):
         """
         from exudyn_ehd.pictures.histories import plot_traces
 
-        return plot_traces(self._history(), quantities, **{"title": self._title(), **options})
+        return plot_traces(self._history(), quantities, **{"title": _title_of(self), **options})
 
     def plot_waterfall(
         self,
@@ -138,7 +131,7 @@ class HistoryPictures(Titled):
         from exudyn_ehd.pictures.histories import plot_waterfall
 
         return plot_waterfall(
-            self._history(), quantity, speed=speed, window=window, title=self._title(), ax=ax, path=path
+            self._history(), quantity, speed=speed, window=window, title=_title_of(self), ax=ax, path=path
         )
 
     def _history(self) -> HistoryRecord:

@@ -6,16 +6,23 @@ from __future__ import annotations
 
 import pathlib
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from matplotlib import axes, figure
+    from matplotlib.projections import polar
+
     from exudyn_ehd.bearing import JournalBearing
     from exudyn_ehd.film.heat.options import Walls
 
 Target = str | pathlib.Path | None
 """File that a picture is written to; None: it is not written."""
+Axes: TypeAlias = "axes.Axes"
+PolarAxes: TypeAlias = "polar.PolarAxes"
+Figure: TypeAlias = "figure.Figure"
+"""Types of matplotlib, for modules that must not import it."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -38,9 +38,6 @@ PAGE, TALL, WIDE = 7.2, (3.5, 3.9), (4.5, 3.2)
 # Matplotlib's backends that show nothing, in lower case.
 FILES_ONLY = [name.lower() for name in backend_registry.list_builtin(BackendFilter.NON_INTERACTIVE)]
 
-# Type of pictures in column or page width, pt; ticks and legends are set an eighth smaller.
-TYPE_SIZE = 8.0
-
 RC = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
@@ -68,7 +65,8 @@ TEXT = (
 )
 SMALL_TEXT = ("xtick.labelsize", "ytick.labelsize", "legend.fontsize")
 
-_type_size: ContextVar[float] = ContextVar("type size of the styled context", default=TYPE_SIZE)
+# Type of pictures in column or page width, pt; ticks and legends are set an eighth smaller.
+_type_size: ContextVar[float] = ContextVar("type size of the styled context", default=8.0)
 
 
 @contextmanager
@@ -81,7 +79,7 @@ def styled(type_size: float | None = None) -> Iterator[None]:
     Parameters
     ----------
     type_size : float, optional
-        Type of titles and labels, pt; by default that of the styled context around this one, or `TYPE_SIZE`. Figures
+        Type of titles and labels, pt; by default that of the styled context around this one, or 8 pt. Figures
         wider than a page take more.
     """
     size = _type_size.get() if type_size is None else type_size

@@ -23,22 +23,17 @@ import numbers
 import pathlib
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.static.equilibrium import equilibrium
+from exudyn_ehd.pictures.records import Axes, Figure, Target
 from exudyn_ehd.progress import is_shown
 from exudyn_ehd.status import EHDError, InputError, did_you_mean, require_integer, require_number
 from exudyn_ehd.studies.rows import Row, RowFile, require_executor, rows_of
 from exudyn_ehd.tables import Table
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from exudyn_ehd.pictures.records import Target
 
 _WHERE = "parameter_study"
 

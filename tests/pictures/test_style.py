@@ -13,7 +13,7 @@ from exudyn_ehd.pictures.bush import Frame, contour_figure, plot_bearing
 from exudyn_ehd.pictures.files import Frames
 from exudyn_ehd.pictures.histories import plot_load, plot_orbit, plot_traces
 from exudyn_ehd.pictures.maps import PRESSURE, plot_map
-from exudyn_ehd.pictures.style import TYPE_SIZE, styled
+from exudyn_ehd.pictures.style import styled
 from exudyn_ehd.solid.mesh import HollowCylinder
 from tests.benchmarks.accuracy.report.pictures import summary_figure, work_precision
 from tests.benchmarks.accuracy.table import DATA, Row, read_table
@@ -84,4 +84,4 @@ def test_pictures_in_a_larger_figure_take_its_type(film):
     assert [text.get_fontsize() for text in texts] == [11.0] * 4
     figure = Figure()
     plot_map(film, PRESSURE, ax=figure.add_subplot())
-    assert figure.axes[0].title.get_fontsize() == TYPE_SIZE
+    assert figure.axes[0].title.get_fontsize() == 8.0

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import exudyn as exu
 import numpy as np
@@ -18,12 +17,8 @@ from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, State
 from exudyn_ehd.coupling.rotor.spinning import WHERE
 from exudyn_ehd.coupling.run.solve import joints_of
 from exudyn_ehd.joint.static.dynamic_stiffness import SCAN
-from exudyn_ehd.pictures.records import Target
+from exudyn_ehd.pictures.records import Axes, Figure, Target, Unit
 from exudyn_ehd.status import InputError, require_number, require_plausible
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 # Configurations of a system that the search overwrites, although a run or its history continues from them.
 CONFIGURATIONS = (CURRENT, START_OF_STEP)
@@ -65,7 +60,6 @@ class StabilityMap:
     ) -> Figure:
         """Stable and unstable speeds over the parameter, called ``text`` and shown as ``factor`` times its values."""
         from exudyn_ehd.pictures.curves import plot_map
-        from exudyn_ehd.pictures.records import Unit
 
         return plot_map(self.values, self.thresholds, self.limits, (text, Unit(unit, factor)), ax=ax, path=path)
 

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import exudyn as exu
 import numpy as np
@@ -16,12 +15,8 @@ from exudyn_ehd.coupling.rotor.vibrations import vibrations, vibrations_in_films
 from exudyn_ehd.coupling.run.restart import settle
 from exudyn_ehd.coupling.run.solve import joints_of
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
-from exudyn_ehd.pictures.records import Target
+from exudyn_ehd.pictures.records import Axes, Figure, Target
 from exudyn_ehd.status import FilmError, InputError, require_number
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -14,7 +14,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import ClassVar, cast
 
 import numpy as np
 
@@ -41,13 +41,8 @@ from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY
 from exudyn_ehd.joint.spherical.model import SphericalEvaluation, SphericalModel, steady_history
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
-from exudyn_ehd.pictures.records import Target, shown
+from exudyn_ehd.pictures.records import Figure, PolarAxes, Target, shown
 from exudyn_ehd.status import FilmError, require_type, require_vector
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from matplotlib.projections.polar import PolarAxes
-
 
 # Gap over the composite roughness below which asperities carry, where a typical wall begins; upper bound of this onset,
 # over the clearance.

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, overload
+from typing import overload
 
 import numpy as np
 
@@ -48,13 +48,10 @@ from exudyn_ehd.joint.static.steady import (
     require_rest,
     result_at,
 )
+from exudyn_ehd.joint.static.thrust_pads import ThrustPadsResult, equilibrium_of_pads
 from exudyn_ehd.joint.thrust import ThrustModel, faces_of
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.static.thrust_pads import ThrustPadsResult
-
 
 # Relative error of the critical mass above which a printed result contains it.
 SURE = 0.05
@@ -308,8 +305,6 @@ def equilibrium(
         raise InputError("equilibrium: speed must not be zero: without it the film carries no load at any position.")
     require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", LARGEST_SPEED)
     if isinstance(bearing, TiltingThrustPads):
-        from exudyn_ehd.joint.static.thrust_pads import equilibrium_of_pads
-
         return equilibrium_of_pads(bearing, omega, load, (tilt, axial_position, axial_load))
     force = require_vector("equilibrium: load", load, 2, "N (x and y on the journal; a weight W is (0, -W))")  # type: ignore[arg-type]
     b = require_vector("equilibrium: tilt", tilt, 2, "rad (slopes bx and by)")
