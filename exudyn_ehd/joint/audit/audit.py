@@ -191,20 +191,20 @@ def _grid(
     size, sizes = getattr(film, name), {"n_theta": film.n_theta, "n_z": film.n_z}
     default = getattr(replace(case.bearing, film=FiniteLength()).sized_film, name)
     is_fine = across > ENOUGH and size >= default and not narrows
-    change = None if is_fine else case.change(switches.refined(**sizes | {name: 2 * size}))
+    change = None if is_fine else case.change(partial(switches.on_grid, **sizes | {name: 2 * size}))
     found = replace(judged(case, effect, f"{text}, {name} = {size}", value, None), change=change)
     wanted = unit * math.ceil(1.5 * size * FEWEST / (unit * max(across, 0.25)))
     if found.matters or (change is not None and change.found and change.size > MATTERS):
         cause = "film narrows too fast towards its ends" if narrows else "pressure peak is too narrow"
         wanted = max(wanted, unit * math.ceil(1.5 * size / unit))
-        grid, remedy = f"{name}={wanted}", switches.refined(**sizes | {name: wanted})
+        grid, remedy = f"{name}={wanted}", partial(switches.on_grid, **sizes | {name: wanted})
         if found.matters and worst.wanted is not None:
             # the grid that `steady` and runs name
             grid, remedy = repr(worst.wanted), partial(replace, film=worst.wanted)
         return replace(found, matters=True, advice=f"the {cause} for the grid: {grid}.", remedy=remedy)
     wanted = max(wanted, fewest)
     if across > TOO_FINE * FEWEST and wanted < size:
-        coarser = switches.refined(**sizes | {name: wanted})
+        coarser = partial(switches.on_grid, **sizes | {name: wanted})
         # a flexible bore has a constriction narrower than the pressure peak
         loss = None if case.bearing.bush is None else case.change(coarser)
         if loss is None or loss.size <= MATTERS:
@@ -230,7 +230,7 @@ def supply_resolution(case: Case) -> Finding | None:
         "intervals around on the narrowest area of supply",
         min(widths) * b.columns / (2.0 * math.pi),
         None,
-        switches.refined(n_theta, n_z),
+        partial(switches.on_grid, n_theta=n_theta, n_z=n_z),
         mattering=f"the areas of supply are coarse on this grid: n_theta={n_theta}, n_z={n_z}.",
     )
 

@@ -182,12 +182,8 @@ def swift_stieber(bearing: JournalBearing) -> JournalBearing:
     return replace(bearing, cavitation=SwiftStieber(cavity_pressure=pressure))
 
 
-def refined(n_theta: int, n_z: int) -> Switch:
-    """Return a switch to a grid of this size."""
-    return partial(_on_grid, n_theta, n_z)
-
-
-def _on_grid(n_theta: int, n_z: int, bearing: JournalBearing) -> JournalBearing:
+def on_grid(bearing: JournalBearing, n_theta: int, n_z: int) -> JournalBearing:
+    """Return the bearing with a grid of this size."""
     return replace(bearing, film=replace(bearing.film, n_theta=n_theta, n_z=n_z))
 
 

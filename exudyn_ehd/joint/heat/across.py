@@ -30,8 +30,6 @@ the tilt, and the surfaces of bush and journal. The columns of conducting walls 
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 import scipy
 from numba import njit
@@ -115,22 +113,16 @@ class FluidityField(ViscosityField):
                 carrier *= factor
 
 
-class Shapes(NamedTuple):
-    """Flows of sliding and of pressure at the heights and below them, over the mean flow; (n, m, 5) each."""
+def flow_shapes(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Flows of sliding and of pressure at the heights, and both below the heights, over the mean flow.
 
-    slides: np.ndarray
-    pressed: np.ndarray
-    slides_below: np.ndarray
-    pressed_below: np.ndarray
-
-
-def flow_shapes(fluid: np.ndarray) -> Shapes:
-    """Shapes of the flows for the fluidities (n, m, 4)."""
+    Four arrays (n, m, 5), for the fluidities (n, m, 4).
+    """
     J0, J1, J2 = np.moveaxis(fluid @ _MOMENTS, -1, 0)[..., None]
     F0, F1, B0, B1 = ((fluid.reshape(-1, 4) @ of).reshape(*fluid.shape[:2], 5) for of in _FLOWS)
     centre = J1 / J0
     slide, press = 1.0 / (J0 - J1), 1.0 / (J2 - J1 * centre)
-    return Shapes(slide * F0, press * (centre * F0 - F1), slide * B0, press * (centre * B0 - B1))
+    return slide * F0, press * (centre * F0 - F1), slide * B0, press * (centre * B0 - B1)
 
 
 def heat_tilts(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -192,8 +184,8 @@ def carry(axis, driven, sliding, shapes, at, limiter, ends_out, below_out, conte
     ----------
     driven, sliding : (n, m) arrays
         Flows by pressure and by sliding.
-    shapes : Shapes
-        Of the flows on the links.
+    shapes : four arrays
+        `flow_shapes` on the links.
     at : (n, m, 5, 4) array
         See `at_heights`.
     limiter : three arrays
@@ -300,10 +292,10 @@ class PairBalance(HeatBalance):
         """Add the heat that flows carry; the limiter takes the film's extrapolated temperatures ``felt`` (4, n, m)."""
         film, flows = self.film, self.flows
         q, (kx, kz) = film.solver.system.flow_pressure, conductances_of(film)
-        at, own = at_heights(self.surface), flow_shapes(field.vertices)
+        at, (slides, pressed, slides_below, pressed_below) = at_heights(self.surface), flow_shapes(field.vertices)
         limiter = start_heights(felt), self.links(), self.held
         made = flows.found - flows.lost
-        below = flows.outside[..., None] * own.pressed_below + made[..., None] * own.slides_below
+        below = flows.outside[..., None] * pressed_below + made[..., None] * slides_below
         content, ends = flows.outside + made, np.zeros((2, 2, *self.own.shape))
         for axis, (k, whole, fluid) in enumerate(((kx, flows.x, field.along), (kz, flows.z, field.across))):
             driven = k * (q - np.roll(q, -1, axis))
@@ -313,12 +305,12 @@ class PairBalance(HeatBalance):
             ends[:, 0, unknown, ..., unknown] += stored * stirred
             ends[:, 1, unknown, ..., unknown] -= stored * stirred
         self.ends = ends
-        leaves, loses = (weighed(flow, at) for flow in (own.pressed, own.slides))
+        leaves, loses = (weighed(flow, at) for flow in (pressed, slides))
         if flows.areas:
             # oil that enters a supply area is mixed over the height
             leaves[:, np.logical_or.reduce(flows.areas)] = np.eye(2, 4)[:, None] * [[[1.0]], [[0.0]]]
         self.takes, uniform = (leaves[0], loses[0]), np.ones((*q.shape, HEIGHTS.size, 4))
-        self.brings = flows.found * weighed(own.slides, uniform)[..., 0]
+        self.brings = flows.found * weighed(slides, uniform)[..., 0]
         self.own[0, ..., 0] += content
         self.own[1, ..., 1] += content / 3.0
         self.own[1] -= 2.0 * weighed(below - content[..., None] * HEIGHTS, at)[0]
