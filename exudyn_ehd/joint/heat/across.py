@@ -171,11 +171,6 @@ def weighed(flow: np.ndarray, at: np.ndarray) -> np.ndarray:
     return np.asarray(np.einsum("rijg,ijgc->rijc", _WEIGHTS[:, None, None] * flow, at))
 
 
-def start_heights(fields: np.ndarray) -> np.ndarray:
-    """Temperatures (n, 5, m) at the heights, from mean, tilt and both surfaces (4, n, m)."""
-    return np.ascontiguousarray(np.einsum("gc,cij->igj", _CUBIC, fields))
-
-
 @njit(cache=True, fastmath=FAST)
 def carry(axis, driven, sliding, shapes, at, limiter, ends_out, below_out, content_out):
     """Add the heat, its tilt and the oil that flow over the links in theta (axis 0) or z (1).
@@ -189,8 +184,8 @@ def carry(axis, driven, sliding, shapes, at, limiter, ends_out, below_out, conte
     at : (n, m, 5, 4) array
         See `at_heights`.
     limiter : three arrays
-        `start_heights`, and ``links`` and ``held`` as in `exudyn_ehd.film.heat.energy.transport_slopes`. Here the
-        limiter of that function acts at every height.
+        Temperatures (n, 5, m) at the heights, and ``links`` and ``held`` as in
+        `exudyn_ehd.film.heat.energy.transport_slopes`. Here the limiter of that function acts at every height.
     ends_out : (2, 2, n, m, 4) array
         Coefficients of the heat and tilt that leave over the link: of the temperatures at its first vertex, and at its
         second one.
@@ -293,7 +288,7 @@ class PairBalance(HeatBalance):
         film, flows = self.film, self.flows
         q, (kx, kz) = film.solver.system.flow_pressure, conductances_of(film)
         at, (slides, pressed, slides_below, pressed_below) = at_heights(self.surface), flow_shapes(field.vertices)
-        limiter = start_heights(felt), self.links(), self.held
+        limiter = np.ascontiguousarray(np.einsum("gc,cij->igj", _CUBIC, felt)), self.links(), self.held
         made = flows.found - flows.lost
         below = flows.outside[..., None] * pressed_below + made[..., None] * slides_below
         content, ends = flows.outside + made, np.zeros((2, 2, *self.own.shape))

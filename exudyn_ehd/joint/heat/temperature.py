@@ -19,9 +19,6 @@ from exudyn_ehd.joint.heat.power import heat_and_exchange
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import SMALL
 
-# Largest temperature coefficient of the viscosity of any oil, 1/K. If the heat times this is below what the oil stores
-# per kelvin, the heat is not linearised. Larger: the coefficient is computed more often.
-STEEPEST = 0.2
 # Largest ratio of a step to the one before with which BDF2 is zero-stable, 1 + sqrt(2) (E. Hairer, S. P. Norsett, G.
 # Wanner, Solving Ordinary Differential Equations I, 1993, section III.5). Longer steps are taken by backward Euler.
 LARGEST_STEP_RATIO = 2.41
@@ -73,18 +70,6 @@ class OilTemperature(abc.ABC):
     upwind = False
 
     @abc.abstractmethod
-    def initial_temperature(self) -> Field:
-        """Temperature at the start of a motion, K."""
-
-    @abc.abstractmethod
-    def across(self, temperature: Field) -> np.ndarray:
-        """Fields (k, ...) across the film that describe its temperature, K; the first one is the mean."""
-
-    @abc.abstractmethod
-    def warmed(self, temperature: Field, change: np.ndarray) -> Field:
-        """Temperature after a ``change`` of the fields of `across`, K."""
-
-    @abc.abstractmethod
     def set_viscosity(self, temperature: Field) -> float:
         """Set the viscosity field to that of a temperature, K.
 
@@ -116,6 +101,21 @@ class OilTemperature(abc.ABC):
     def _or_supply(self, temperature: float | None) -> float:
         return self.supply if temperature is None else temperature
 
+    def initial_temperature(self) -> Field:
+        """Temperature at the start of a motion, K."""
+        return self.initial
+
+    def across(self, temperature: Field) -> np.ndarray:
+        """Fields (k, ...) across the film that describe its temperature, K; the first one is the mean.
+
+        Here there is one field, the temperature itself.
+        """
+        return np.array([temperature], dtype=float)
+
+    def warmed(self, temperature: Field, change: np.ndarray) -> Field:
+        """Temperature after a ``change`` of the fields of `across`, K."""
+        return float(temperature + change[0])
+
     def state_of(self, history: History | None) -> Field:
         """Temperature in a history, K; the initial one if there is none."""
         known = None if history is None else history.temperature
@@ -123,11 +123,10 @@ class OilTemperature(abc.ABC):
 
     def extrapolated(self, history: History | None, step: float) -> Field:
         """Temperature of the film that ends a step, K, whose viscosity it has."""
-        if (heating := heating_before(history, step)) is None:
+        if history is None or (heating := heating_before(history, step)) is None:
             return self.state_of(history)
         known, size, T = self._extrapolated
         if known is not history or size != step:
-            assert history is not None
             start, change = self.state_of(history), step * heating[1]
             # a film that is D above the coldest temperature and falls comes to D exp(change / D)
             room, fall = self.across(start)[0] - self.coldest(history), np.minimum(change[0], 0.0)
@@ -212,8 +211,6 @@ class OilTemperature(abc.ABC):
         In steps much shorter than the time in which the oil is replaced, the excess is 0. In a steady state, with no
         store, the linearisation lets the iteration converge under strong heating.
         """
-        if not np.any(STEEPEST * heat > store):
-            return 0.0
         thicker, thinner = (self.viscosity_ratio(T + d) for d in (-0.05, 0.05))
         return np.maximum(np.log(thicker / thinner) / 0.1 * heat - store, 0.0)
 
@@ -249,29 +246,14 @@ class LumpedTemperature(OilTemperature):
         self.housing = self._or_supply(spec.housing_temperature)
         self.around = (self.housing,)
         self.capacity = self.flow_capacity * volume + spec.capacity
-        self._last = math.nan, 1.0
         self.field: ViscosityField | None = None
-
-    def initial_temperature(self) -> float:
-        """Temperature at the start of a motion, K."""
-        return self.initial
-
-    def across(self, temperature: Field) -> np.ndarray:
-        """Return the film's one temperature, K, as an array (1,)."""
-        return np.array([temperature], dtype=float)
-
-    def warmed(self, temperature: Field, change: np.ndarray) -> float:
-        """Temperature after a ``change`` (1,), K."""
-        return float(temperature + change[0])
 
     def set_viscosity(self, temperature: float | np.ndarray) -> float:
         """Set the viscosity field, and return the factor on the reference viscosity at a temperature, K."""
-        if self._last[0] != temperature:
-            ratio = float(self.viscosity_ratio(float(temperature)))
-            self._last = float(temperature), ratio
-            if self.field is not None:
-                self.field.set(np.full((1, 1), ratio))
-        return self._last[1]
+        ratio = float(self.viscosity_ratio(float(temperature)))
+        if self.field is not None:
+            self.field.set(np.full((1, 1), ratio))
+        return ratio
 
     def _rates(self, film: SolvedFilm) -> tuple[float, float]:
         """Heat, W, and conductance of the oil from the film to what is `outside`, W/K."""

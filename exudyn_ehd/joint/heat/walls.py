@@ -11,7 +11,6 @@ follows from its banded system, which is factored once, and from `exudyn_ehd.fil
 from __future__ import annotations
 
 import math
-from functools import cached_property
 
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve
@@ -33,15 +32,14 @@ AGREED = 1e-13
 class _Wall:
     """One wall with its place among the columns of a state."""
 
-    def __init__(self, wall: Conduction, rings: Rings, supply: float, bearing: JournalBearing) -> None:
-        self.rings = rings
+    def __init__(self, wall: Conduction, rings: Rings, columns: slice, supply: float, bearing: JournalBearing) -> None:
+        self.rings, self.columns = rings, columns
         ambient, initial, clearance = (
             supply if T is None else T
             for T in (wall.ambient_temperature, wall.initial_temperature, wall.clearance_temperature)
         )
         self.ambient, self.initial, self.at_clearance = ambient, initial, clearance
         self.expands = wall.expansion * bearing.journal_radius
-        self.columns = slice(0)
 
     def of(self, state: np.ndarray) -> np.ndarray:
         """Temperatures (columns, k) in a state."""
@@ -87,22 +85,17 @@ class FilmTemperature(OilTemperature):
         for side, wall in enumerate((spec.bush, spec.journal)):
             if wall is not None:
                 rings = Rings(wall, R, L, shape[0] if side == 0 else 1, inward=side == 1)
-                self.sides[side] = known = _Wall(wall, rings, self.supply, bearing)
-                known.columns = slice(end, end + rings.radii.size)
-                end = known.columns.stop
+                columns = slice(end, end + rings.radii.size)
+                self.sides[side], end = _Wall(wall, rings, columns, self.supply, bearing), columns.stop
                 self.transfer += wall.conductance  # above 0, the wall is a sink for the heat
         self.conducting = [wall for wall in self.sides if wall is not None]
         self.size, self.unknowns = end, sum(wall.rings.columns for wall in self.conducting)
         if bearing.thrust is not None:
             self.initial_leaving = np.full(2, float(self.initial))
         self.grows = any(wall.expands > 0.0 for wall in self.conducting)
+        self.band = BandSolver(shape, self.fields)
         self._last: np.ndarray | None = None
         self._last_split: np.ndarray | None = None
-
-    @cached_property
-    def band(self) -> BandSolver:
-        """Banded systems of the film's unknowns."""
-        return BandSolver(self.shape, self.fields)
 
     def initial_temperature(self) -> np.ndarray:
         """State (n, m + k) at the start of a motion, K."""
