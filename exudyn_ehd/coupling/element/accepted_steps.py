@@ -26,7 +26,7 @@ from exudyn_ehd.coupling.exudyn_solvers import GapWatch
 from exudyn_ehd.coupling.items.objects import Presence
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, PEAK_PRESSURE, JointHistory
 from exudyn_ehd.coupling.record.record import FilmRecorder, Record
-from exudyn_ehd.joint.audit.resolution import RingingWatch, warn_of_ringing
+from exudyn_ehd.joint.audit.resolution import LIMIT, RingingWatch, warn_of_ringing
 from exudyn_ehd.joint.balance.limits import HOT, lacks_oil
 from exudyn_ehd.joint.model.results import FilmFields
 from exudyn_ehd.joint.solved_film import History
@@ -174,13 +174,10 @@ class AcceptedSteps:
             self.start = start
             motion = self.film.motion(mbs, START_OF_STEP)
             self.memory = self.film.model.initial_history(motion) if np.isfinite(motion.sum()) else None
-        trial = self.film.look(mbs, start, START_OF_STEP)
+        trial, row = self._look(mbs, start, START_OF_STEP)
         self.begin = self._begin_of_next(start, trial)
-        self.film.outer.take(mbs, START_OF_STEP, trial)
-        row = self.film.row(start, trial)
         if self.control is not None:
-            film = trial.evaluation if row is not None and self._makes_room else None
-            self.control.start(trial, None if film is None else film.quantities()["minimum_gap"])
+            self.control.start(trial, row[MINIMUM_GAP] if row is not None and self._makes_room else None)
         if row is not None:
             # a resumed state was recorded at the end of its step
             if not resumed or start > self.record.last_time:
@@ -197,6 +194,14 @@ class AcceptedSteps:
                     self._first_memory = self.memory
         last, self.start = self.start, start
         self._check(start, trial, start - last, row)
+
+    def _look(
+        self, mbs: exu.MainSystem, time: float, configuration: exu.ConfigurationType
+    ) -> tuple[Trial, np.ndarray | None]:
+        """Evaluate the film at an accepted state, with the load on it; return the trial and its row of the record."""
+        trial = self.film.look(mbs, time, configuration)
+        self.film.outer.take(mbs, configuration, trial)
+        return trial, self.film.row(time, trial)
 
     def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: exudyn_solvers.Stored) -> bool:
         """Prepare for the run of a new solver; return whether the run continues from a stored state."""
@@ -296,7 +301,7 @@ class AcceptedSteps:
         self._warn_of_film(start, trial, row)
         if self._ringing is not None:
             force = trial.found.wrench[: failures.axes].tolist()
-            rang = self._ringing.rings
+            rang = self._ringing.most >= LIMIT
             if self._ringing.take(start, *force) and not rang:
                 warn_of_ringing(failures.name, self._ringing, starts_well=self.in_own_run)
             if self._ringing.throws:
@@ -338,9 +343,8 @@ class AcceptedSteps:
 
     def remembered(self, mbs: exu.MainSystem) -> tuple[float, History | None, StepStart | None, np.ndarray]:
         """Time of the last accepted state, the film's memory there, where the next step begins, and the record."""
-        time, trial, _ = self.look_at_accepted(mbs)
-        self.film.outer.take(mbs, self._accepted, trial)
-        row, memory = self.film.row(time, trial), self.memory
+        time, memory = mbs.systemData.GetTime(self._accepted), self.memory
+        trial, row = self._look(mbs, time, self._accepted)
         begin = self._begin_of_next(time, trial)
         if self._uses_memory and time > self.start and row is not None:
             memory = trial.found.history()
@@ -389,8 +393,6 @@ class AcceptedSteps:
         known = solver is not None and (self.record.end is not None or time != solver.it.currentTime)
         if known or time <= self.record.last_time:
             return
-        trial = self.film.look(mbs, time, self._accepted)
-        self.film.outer.take(mbs, self._accepted, trial)
-        self.record.end = self.film.row(time, trial)
+        trial, self.record.end = self._look(mbs, time, self._accepted)
         if self.record.end is None and self.is_idle:
             self.film.failures.warn_of_end(time, trial)

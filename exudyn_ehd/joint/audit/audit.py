@@ -305,8 +305,7 @@ ROWS: Mapping[str, AuditRow] = {
 
 def audit_of(case: Case, rows: Mapping[str, AuditRow] = ROWS) -> Audit:
     """Audit the films of a case."""
-    findings = [row(case) for row in rows.values()]
-    return Audit(findings=tuple(finding for finding in findings if finding is not None))
+    return Audit(findings=tuple(finding for row in rows.values() if (finding := row(case)) is not None))
 
 
 def audit_record(

@@ -230,7 +230,7 @@ def walls(case: Case) -> Finding | None:
         case,
         "walls",
         "share of the loss that steel around the film would give off",
-        numbers["rise"].max() * switches.typical_conductance(b) / max(numbers["power_loss"].max(), 1e-300),
+        numbers["rise"].max() * sum(switches.typical_conductances(b)) / max(numbers["power_loss"].max(), 1e-300),
         False,
         switches.walled,
         mattering="give FilmEnergy(conductivity=0.13) a bush=Conduction(...) and a journal=Conduction(...).",
@@ -239,8 +239,7 @@ def walls(case: Case) -> Finding | None:
 
 def temperature(case: Case) -> Finding | None:
     """Highest temperature of the film, compared with the limit of mineral oils; None for an isothermal film."""
-    thermal = case.bearing.thermal
-    if thermal is None:
+    if (thermal := case.bearing.thermal) is None:
         return None
     value, advice = known_supply(thermal) + case.numbers["rise"].max(), "mineral oils do not bear this for long: "
     indicator = "highest temperature of the film, K"

@@ -223,8 +223,6 @@ class RingingWatch:
         Zigzags after which an alternation that lasts is another burst: more than `LIMIT` bursts lie in the window then.
     first, last : float
         Times of the first and the last burst, s; nan without one.
-    rings : bool
-        True after `LIMIT` or more bursts lay in one window.
     worst : (float, float)
         Largest force that throws masses, and its mean, N.
     """
@@ -235,12 +233,12 @@ class RingingWatch:
 
     def begin_anew(self) -> None:
         """Forget all steps."""
-        self.most, self.rings = 0, False
+        self.most = 0
         self.first = self.last = math.nan
         # time and force of the last steps; the last eight d with their sizes
         self._states: deque[tuple[float, float, float, float]] = deque(maxlen=4)
         self._bends: deque[tuple[float, float, float, float]] = deque([(0.0, 0.0, 0.0, 0.0)] * 8, maxlen=8)
-        self._bursts: deque[int] = deque()
+        self._bursts: list[int] = []
         self._throws: deque[int] = deque([-WINDOW] * self.lasting, maxlen=self.lasting)
         self.worst = (0.0, 0.0)
         self._step = self._zigzags = 0
@@ -261,10 +259,9 @@ class RingingWatch:
         bool
             True if this step is a burst and `LIMIT` or more bursts lie in the window.
         """
-        states = self._states
-        if states and not time > states[-1][0]:
+        if self._states and not time > self._states[-1][0]:
             self.begin_anew()
-            states = self._states
+        states = self._states
         states.append((time, x, y, z))
         self._step += 1
         self._largest = max(math.hypot(x, y, z), self._largest - self._largest / WINDOW)
@@ -305,21 +302,17 @@ class RingingWatch:
         return True
 
     def _count(self, time: float) -> bool:
-        bursts = self._bursts
         self._zigzags = 0
-        bursts.append(self._step)
-        while bursts[0] <= self._step - WINDOW:
-            bursts.popleft()
-        self.most = max(self.most, len(bursts))
+        self._bursts = [step for step in self._bursts if step > self._step - WINDOW] + [self._step]
+        self.most = max(self.most, len(self._bursts))
         self.first = time if math.isnan(self.first) else self.first
         self.last = time
-        self.rings = self.rings or len(bursts) >= LIMIT
-        return len(bursts) >= LIMIT
+        return len(self._bursts) >= LIMIT
 
     @property
     def throws(self) -> bool:
         """Return whether the run rings and `lasting` forces within the window have thrown masses."""
-        return self.rings and self._throws[0] > self._step - WINDOW
+        return self.most >= LIMIT and self._throws[0] > self._step - WINDOW
 
 
 def watched(time: np.ndarray, force: np.ndarray, area: float) -> RingingWatch:

@@ -35,11 +35,6 @@ VAPOUR_PRESSURE = -1e5
 STEEL = {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3, "density": 7800.0}
 RING_THICKNESS = 0.5  # of the bore radius
 
-OIL_CONDUCTIVITY, STEEL_EXPANSION = 0.13, 1.15e-5  # W/(m K), 1/K
-# Heat transfer from a housing to still air by convection and radiation, W/(m2 K), and length over radius of the shaft
-# on either side through which heat leaves. A larger coefficient and a shorter shaft cool more.
-AIR_COEFFICIENT, SHAFT = 15.0, 4.0
-
 Switch = Callable[[JournalBearing], JournalBearing]
 
 
@@ -98,29 +93,27 @@ def heated(bearing: JournalBearing) -> JournalBearing:
     return replace(bearing, thermal=bearing.thermal or LumpedThermal(supply_temperature=oil.temperature))
 
 
-def typical_conductance(bearing: JournalBearing) -> float:
-    """Conductance from a steel ring half a radius thick to air and along a steel shaft to both sides, W/K."""
+def typical_conductances(bearing: JournalBearing) -> tuple[float, float]:
+    """Conductances from a steel ring half a radius thick to air, and along a steel shaft to both sides, W/K.
+
+    Still air takes 15 W/(m2 K) by convection and radiation. On either side heat leaves through four radii of the shaft.
+    """
     R = bearing.journal_radius
-    outside = 2.0 * math.pi * (1.0 + RING_THICKNESS) * R * bearing.length * AIR_COEFFICIENT
-    return outside + _along_shaft(R)
-
-
-def _along_shaft(radius: float) -> float:
-    return 2.0 * math.pi * radius * Conduction.conductivity / SHAFT
+    outside = 2.0 * math.pi * (1.0 + RING_THICKNESS) * R * bearing.length * 15.0
+    return outside, 2.0 * math.pi * R * Conduction.conductivity / 4.0
 
 
 def walled(bearing: JournalBearing) -> JournalBearing:
-    """Return the bearing with a steel ring half a radius thick in air and a solid steel journal, both of which grow."""
+    """Return the bearing with a steel ring half a radius thick in air and a solid steel journal, both of which grow.
+
+    Steel grows by 1.15e-5 per kelvin; oil whose conductivity is not given has 0.13 W/(m K).
+    """
     R, thermal = bearing.journal_radius, bearing.thermal
     assert isinstance(thermal, FilmEnergy)
-    along = _along_shaft(R)
-    bush = Conduction(
-        thickness=RING_THICKNESS * R,
-        conductance=typical_conductance(bearing) - along,
-        expansion=STEEL_EXPANSION,
-    )
+    outside, along = typical_conductances(bearing)
+    bush = Conduction(thickness=RING_THICKNESS * R, conductance=outside, expansion=1.15e-5)
     journal = replace(bush, thickness=R, conductance=along)
-    conductivity = OIL_CONDUCTIVITY if thermal.conductivity is None else thermal.conductivity
+    conductivity = 0.13 if thermal.conductivity is None else thermal.conductivity
     return replace(bearing, thermal=replace(thermal, bush=bush, journal=journal, conductivity=conductivity))
 
 
