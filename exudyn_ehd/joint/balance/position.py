@@ -76,16 +76,13 @@ class LoadSearch(Balance):
             raise self._not_found(carried * self.size)
         return found
 
-    def tolerance(self, motion: np.ndarray) -> float:
-        """Tolerance of the unbalance over the load."""
-        # round-off of the film's force, which limits the accuracy under tiny loads
-        return max(LOAD_TOLERANCE, np.finfo(float).eps * self.model.bearing.reference_force(motion[8]) / self.size)
-
     def attempt(
         self, motion: np.ndarray, temperature: np.ndarray, resistance: float = 0.0, rounds: int = ROUNDS
     ) -> Place | None:
         """Return the film of one search, see `solve`; None if it is not in balance, or too hot for any oil."""
-        tolerance = self.tolerance(motion)
+        # round-off of the film's force limits the accuracy under tiny loads
+        rounding = np.finfo(float).eps * self.model.bearing.reference_force(motion[8]) / self.size
+        tolerance = max(LOAD_TOLERANCE, rounding)
         try:
             found = self.solve(motion, temperature, tolerance, resistance=resistance, rounds=rounds)
         except FilmError as error:
@@ -268,8 +265,7 @@ def continued(
     at, here = 0.0, None
     while at < 1.0:
         target = min(1.0, at + step)
-        there = reach(target, here, step <= shortest)
-        if there is not None:
+        if (there := reach(target, here, step <= shortest)) is not None:
             at, here = target, there
         elif step <= shortest:
             break
@@ -332,8 +328,7 @@ def steadiest(search: LoadSearch, found: Place) -> Place:
     places = [found]
     for ratio in (LOADED, FREE_STEP):
         start = search.loaded(found.motion, ratio)
-        other = search.attempt(start, found.temperature, search.held_back)
-        if other is None:
+        if (other := search.attempt(start, found.temperature, search.held_back)) is None:
             continue
         away = min(float(np.hypot(*(other.motion - place.motion)[:2])) for place in places)
         # where the stiffness is nearly singular, a load in balance leaves a position far less accurate

@@ -324,8 +324,11 @@ class SphericalBearing(Checked):
     checks: ClassVar = {
         "ball_radius": POSITIVE,
         "radial_clearance": POSITIVE,
+        "lubricant": (Lubricant,),
         "n_phi": partial(require_count, at_least=16),
         "n_chi": partial(require_count, at_least=4),
+        "cavitation": (SwiftStieber, Gumbel, FullSommerfeld, ElrodAdams, Closure),
+        "contact": (RegularisedWall, type(None)),
     }
 
     def __post_init__(self) -> None:
@@ -336,7 +339,6 @@ class SphericalBearing(Checked):
                 f"{name}.radial_clearance must be at most a twentieth of the ball's radius {self.ball_radius:g} m, for "
                 f"which thin films are, got {self.radial_clearance!r}; if yours is diametral, halve it."
             )
-        require_type(f"{name}.lubricant", self.lubricant, Lubricant)
         if (given := self.lubricant.shear_law) is not None:
             raise InputError(
                 f"{name}.lubricant: a spherical film has no shear_law, got {type(given).__name__}: the law takes one "
@@ -351,7 +353,6 @@ class SphericalBearing(Checked):
                 f"{LEAST_ANGLE} and end <= {end:.5g}, got {self.socket_angles!r}; use math.radians for degrees."
             )
         object.__setattr__(self, "socket_angles", (first, last))
-        require_type(f"{name}.cavitation", self.cavitation, SwiftStieber, Gumbel, FullSommerfeld, ElrodAdams, Closure)
         if self.cavitation.cavity_pressure > 0.0:
             raise InputError(
                 f"{name}.cavitation must have a cavity_pressure <= 0 Pa, that of the open edges, got "
@@ -373,7 +374,6 @@ class SphericalBearing(Checked):
         require_type(f"{name}.thermal", self.thermal, LumpedThermal, type(None))
         if self.thermal is not None:
             require_viscosities(f"{name}.thermal", self.thermal, self.lubricant)
-        require_type(f"{name}.contact", self.contact, RegularisedWall, type(None))
         if self.contact is not None:
             require_number(
                 f"{name}.contact: RegularisedWall.onset", self.contact.onset, "m", below=self.radial_clearance

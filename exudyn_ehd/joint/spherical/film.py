@@ -227,9 +227,7 @@ class SphericalFilm:
             f.rate[:] = s.H_t
             wall.limit(s.H, s.HF, np.ones_like(s.H), f.slope, f.bend, f.face_slope)
             s.H_t *= f.slope
-        if self.flow is None:
-            return 0.0, 0.0
-        return self.flow.take(motion[SPIN], place, on_links(f.slope))
+        return (0.0, 0.0) if self.flow is None else self.flow.take(motion[SPIN], place, on_links(f.slope))
 
     def _share(self) -> np.ndarray:
         """Couette shear over that of a full film (n m,)."""

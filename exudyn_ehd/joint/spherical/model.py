@@ -64,20 +64,18 @@ class SphericalEvaluation:
     def sides(self) -> np.ndarray | None:
         """One-sided derivatives (2, 6, 11) of the film of a ball at rest; None if the film has two-sided ones."""
         self._require_current()
-        if not self.model.is_at_rest(self.motion):
+        if (f := self.film) is None or not self.model.is_at_rest(self.motion):
             return None
         spin = float(np.linalg.norm(self.motion[SPIN])) or 1.0
         length = BESIDE * self.model.bearing.radial_clearance
         steps = np.repeat([length, 0.0, spin * length, 0.0, BESIDE * spin], [3, 1, 3, 1, 3])
         # with another model, so that the buffers of this one are not overwritten
-        beside, f = SphericalModel(self.model.bearing), self.film
-        assert f is not None
+        beside = SphericalModel(self.model.bearing)
         return quotients(lambda at: beside.evaluate(at, f.history, f.step).wrench, self.motion, steps)
 
     def quantities(self) -> dict[str, float]:
         """Scalars of this state: m, Pa, N m, W, N."""
-        f = self.film
-        if f is None:
+        if (f := self.film) is None:
             return {"minimum_gap": self.minimum_gap}
         power = -float(f.wrench[:3] @ self.motion[VELOCITY] + f.torque @ self.motion[SPIN])
         warm = {} if f.temperature is None else {"film_temperature": f.temperature}
@@ -93,10 +91,9 @@ class SphericalEvaluation:
 
     def history(self) -> History | None:
         """Return the film's history after this state; None for a film without memory."""
-        if not self.model.remembers:
+        if not self.model.remembers or self.film is None:
             return None
         self._require_current()
-        assert self.film is not None
         return self.model.next_history(self.film)
 
     def _require_current(self) -> None:

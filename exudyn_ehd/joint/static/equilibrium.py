@@ -327,8 +327,7 @@ def equilibrium(
     motion = np.array([*first_guess(bearing, omega, force, b), *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0, place])
     search = kind(model, "equilibrium", np.append(force, along), size=size, faces=faces)
     found = steadiest(search, search.find(motion))
-    small = _small_motions(found)
-    return _result(search, found, model_at(bearing, found.motion) if line else model, small)
+    return _result(search, found, model_at(bearing, found.motion) if line else model)
 
 
 def _no_load(bearing: JournalBearing, omega: float) -> float:
@@ -338,14 +337,9 @@ def _no_load(bearing: JournalBearing, omega: float) -> float:
     return NO_LOAD * bearing.reference_force(omega) + NO_LOAD_FED * area * fed
 
 
-def _result(
-    search: LoadSearch,
-    found: Place,
-    model: BearingModel,
-    small: tuple[np.ndarray, np.ndarray, FilmResponse | None],
-) -> EquilibriumResult:
-    """Result at a position that was found; ``small``: its `_small_motions`."""
-    (K, C, response), bearing, omega = small, model.bearing, abs(float(found.motion[8]))
+def _result(search: LoadSearch, found: Place, model: BearingModel) -> EquilibriumResult:
+    """Result at a position that was found, whose film is the last one of the search's model."""
+    (K, C, response), bearing, omega = _small_motions(found), model.bearing, abs(float(found.motion[8]))
     if response is None:
         ratio, mass = whirl_threshold(K, C, omega)
     else:
