@@ -84,7 +84,15 @@ def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
     if data["nodeType"] in beams.SLOPE_NODES:
         return cable_item(mbs, where, (node,), None)
     if data["nodeType"] == "PointSlope23":
-        return _slope_pair_item(mbs, where, node)
+        place, frame = beams.reference_pose(mbs.GetNodeOutput, node)
+        return Item(
+            position=place,
+            rotation=frame,
+            is_marker=False,
+            kind=None,
+            nodes=(node,),
+            side=lambda point, rotation: beams.marker_on_node(mbs, where, node, place, frame, point, rotation),
+        )
     kind = (NODE_KINDS | POINT_KINDS).get(data["nodeType"])
     if kind is None:
         raise InputError(
@@ -184,19 +192,6 @@ def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tupl
         body=body,
         nodes=nodes,
         side=refuse,
-    )
-
-
-def _slope_pair_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
-    """Node of an ANCF beam."""
-    place, frame = beams.reference_pose(mbs.GetNodeOutput, node)
-    return Item(
-        position=place,
-        rotation=frame,
-        is_marker=False,
-        kind=None,
-        nodes=(node,),
-        side=lambda point, rotation: beams.marker_on_node(mbs, where, node, place, frame, point, rotation),
     )
 
 

@@ -249,8 +249,7 @@ class BushEquations:
         """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""
         start, data = START_OF_STEP, mbs.systemData
         q, q_t = (np.asarray(get(start))[places] for get in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))
-        turned = self.solid.inversion(self.motion(q, q_t, start)[0])
-        if turned:
+        if turned := self.solid.inversion(self.motion(q, q_t, start)[0]):
             raise RunError(f"FlexibleBush '{self.name}' at t = {time:.9g} s: {turned}")
 
     def warn_if_light(self, mbs: exu.MainSystem, q: np.ndarray) -> None:
@@ -301,16 +300,14 @@ class BushEquations:
 
     @cached_property
     def _moving_mass(self) -> csr_matrix:
-        M = self._without_held(self.solid.mass[self._moving_rows][:, self._moving_rows], self._held_inertia)
-        M.eliminate_zeros()
-        return M
+        """Mass matrix of the nodes with coordinates.
 
-    @cached_property
-    def _held_inertia(self) -> float:
-        """Mass [kg] of a coordinate held by a spring, with a frequency far above every frequency of the mesh.
-
-        Upper estimate of the frequencies' squares: largest row sum of K over a hundredth of the smallest diagonal of M.
+        A coordinate held by a spring gets a mass with a frequency far above every frequency of the mesh. Upper estimate
+        of the frequencies' squares: largest row sum of K over a hundredth of the smallest diagonal of M.
         """
         K = self.solid.tangent(np.zeros(self.held.shape))
         highest = 100.0 * float(abs(K).sum(axis=1).max() / self.solid.scalar_mass.diagonal().min())
-        return self._spring / (100.0 * highest)
+        held_inertia = self._spring / (100.0 * highest)
+        M = self._without_held(self.solid.mass[self._moving_rows][:, self._moving_rows], held_inertia)
+        M.eliminate_zeros()
+        return M

@@ -60,8 +60,7 @@ def resolve_pair(mbs: exu.MainSystem, itemNumbers: Sequence[object]) -> tuple[It
     where = f"{_WHERE}.itemNumbers"
     if not isinstance(itemNumbers, (list, tuple)) or len(itemNumbers) != 2:
         raise InputError(f"{where} must be [housing, journal], got {itemNumbers!r}.")
-    housing = resolve(mbs, f"{where}[0]", itemNumbers[0])
-    journal = resolve(mbs, f"{where}[1]", itemNumbers[1])
+    housing, journal = (resolve(mbs, f"{where}[{k}]", number) for k, number in enumerate(itemNumbers))
     if not housing.nodes and not journal.nodes:
         raise InputError(f"{where}: both items are ground; one of them must move, got {list(itemNumbers)!r}.")
     shared = {int(node) for node in housing.nodes} & {int(node) for node in journal.nodes}
@@ -244,8 +243,7 @@ def rigid_marker(
         # on a new ground object at the origin, also for a moving point, which does not turn either
         body = mbs.AddObject(eii.ObjectGround(name=name, visualization=eii.VObjectGround(show=False)))
     else:
-        body = body_of_node(mbs, item.nodes[0])
-        if body is None:
+        if (body := body_of_node(mbs, item.nodes[0])) is None:
             raise InputError(f"{_WHERE}: {asked} needs the rigid body of node {int(item.nodes[0])}, add it before.")
     return mbs.AddMarker(eii.MarkerBodyRigid(name=name, bodyNumber=body, localHT=transform))
 

@@ -17,7 +17,6 @@ rotations, but linear in the displacements.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 
 import exudyn as exu
 import numpy as np
@@ -100,8 +99,7 @@ class FittedSide(Side):
         """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,); nan where no rotation fits."""
         w = self.weights
         x, v = self.reference + self._points(q), self._points(q_t)
-        R = fitted_rotation(w, self.spokes, x)
-        if R is None:
+        if (R := fitted_rotation(w, self.spokes, x)) is None:
             self.frame[:] = np.nan
             return
         self.mean = w @ x
@@ -153,8 +151,7 @@ _RIGID_MARKERS = ("BodyRigid", "NodeRigid", "SuperElementRigid", "KinematicTreeR
 def marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
     """Rigid marker, or marker of a position on a cable or a mass point."""
     data = mbs.GetMarker(marker)
-    item = _known_marker_item(mbs, where, data)
-    if item is not None:
+    if (item := _known_marker_item(mbs, where, data)) is not None:
         return dataclasses.replace(item, marker=marker, is_marker=True)
     if data["markerType"] == "SuperElementRigid":
         body = mbs.GetObject(data["bodyNumber"])
@@ -166,16 +163,22 @@ def marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
             "MarkerBodyRigid or MarkerNodeRigid."
         )
     position, rotation = reference_pose(mbs.GetMarkerOutput, marker)
-    make, nodes = _marker_side(mbs, marker, data)
+    kind, nodes = data["markerType"], _nodes_of_marker(mbs, data)
+
+    def side(point: np.ndarray, joint: np.ndarray) -> Side:
+        if kind == "SuperElementRigid":
+            return FloatingSide(marker, list(nodes), rotation.T @ joint, node_side(mbs, nodes[0]))
+        return (TreeSide if kind == "KinematicTreeRigid" else MarkerSide)(marker, list(nodes), rotation.T @ joint)
+
     return Item(
         position=position,
         rotation=rotation,
         is_marker=True,
         kind=None,
-        inner=data["markerType"] in ("KinematicTreeRigid", "SuperElementRigid"),
+        inner=kind in ("KinematicTreeRigid", "SuperElementRigid"),
         marker=marker,
         nodes=nodes,
-        side=lambda point, joint: make(rotation.T @ joint),
+        side=side,
     )
 
 
@@ -196,8 +199,7 @@ def _known_marker_item(mbs: exu.MainSystem, where: str, data: Data) -> Item | No
         body_type, nodes = body["objectType"], element_nodes(body)
         if body_type in CABLES:
             along, place[0, 3] = float(place[0, 3]), 0.0
-            item = cable_item(mbs, where, nodes, float(body["length"]), along)
-            return _transformed(item, place)
+            return _transformed(cable_item(mbs, where, nodes, float(body["length"]), along), place)
         if is_rigid and body_type in EXACT_BEAMS:
             return beam_item(mbs, where, nodes, float(body["length"]), place)
         if body_type in MASS_POINTS or (is_rigid and body_type in ("Ground", "RigidBody", "RigidBody2D")):
@@ -212,18 +214,10 @@ def _transformed(base: Item, place: np.ndarray) -> Item:
     )
 
 
-def _marker_side(
-    mbs: exu.MainSystem, marker: Index, data: Data
-) -> tuple[Callable[[np.ndarray], Side], tuple[Index, ...]]:
-    """Return a function that makes the side from the joint frame's rotation in the marker, and the side's nodes."""
-    if "nodeNumber" in data:
-        nodes: tuple[Index, ...] = (NodeIndex(int(data["nodeNumber"])),)
-    else:
-        nodes = element_nodes(mbs.GetObject(data["bodyNumber"] if "bodyNumber" in data else data["objectNumber"]))
-    if data["markerType"] == "SuperElementRigid":
-        return (lambda rotation: FloatingSide(marker, list(nodes), rotation, node_side(mbs, nodes[0]))), nodes
-    side = TreeSide if data["markerType"] == "KinematicTreeRigid" else MarkerSide
-    return (lambda rotation: side(marker, list(nodes), rotation)), nodes
+def _nodes_of_marker(mbs: exu.MainSystem, data: Data) -> tuple[Index, ...]:
+    """Nodes of the node, body or object of a marker."""
+    owner = data if "nodeNumber" in data else mbs.GetObject(data.get("bodyNumber", data.get("objectNumber")))
+    return element_nodes(owner)
 
 
 def mesh_item(mbs: exu.MainSystem, where: str, marker: Index, data: Data, body: Data) -> Item:

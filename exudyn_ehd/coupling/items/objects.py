@@ -256,8 +256,7 @@ class Presence:
 
     def require(self, mbs: exu.MainSystem) -> None:
         """Raise `InputError` unless the joint is in the system, on the items that it was made on."""
-        number = self.found(mbs)
-        if number is None:
+        if (number := self.found(mbs)) is None:
             raise InputError(
                 f"LubricatedJoint '{self.name}': its object is no longer in the system, after mbs.Reset() or "
                 "mbs.DeleteObject(...); create the joint again."
