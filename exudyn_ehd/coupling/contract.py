@@ -59,10 +59,9 @@ class JointEvaluation(Protocol):
     O. Minus this wrench, about the same point, acts on the housing. It is nan unless ``status`` is `Status.CONVERGED`.
     """
 
-    @property
-    def status(self) -> Status: ...
-    @property
-    def wrench(self) -> np.ndarray: ...
+    status: Status
+    wrench: np.ndarray
+
     def tangent(self) -> np.ndarray:
         """Derivative (6, 10) of the wrench to the motion; it must be called before the model's next evaluation."""
 
@@ -117,8 +116,8 @@ class Trial:
 class JointModel(Protocol):
     """Model of a film: a pure function of its memory and of the motion (10,) of the journal axis in the joint frame."""
 
-    @property
-    def bearing(self) -> JournalBearing: ...
+    bearing: JournalBearing
+
     @property
     def remembers(self) -> bool:
         """Return whether the force depends on earlier accepted steps; if not, the film needs no memory."""

@@ -135,8 +135,7 @@ def _attach_nodes(
     )
     if bush.equations.contained is not None:
         require_heavy_housing(mbs, item, bush.equations.contained.mass, name)
-    start = initial_coordinates(model, sides)
-    if start is not None:
+    if initial_coordinates(model, sides) is not None:
         assert isinstance(model.elasticity, SolidElasticity)
         u = model.elasticity.displacements @ sides[0].frame[:, :3].T
         for number, shift in zip(bush.nodeNumbers, u):
@@ -202,9 +201,7 @@ def initial_coordinates(model: ElasticBearingModel, sides: tuple[Side, Side]) ->
     first instant it equals a Swift-Stieber film. A film with a heat balance has the initial temperature of the run.
     The modes of a finite-element journal are those of its body, see `_settle_body`.
     """
-    if isinstance(model, TurningModel):
-        return None
-    return _equilibrium([_starting_film(model, sides)])
+    return None if isinstance(model, TurningModel) else _equilibrium([_starting_film(model, sides)])
 
 
 def undeformed(mbs: exu.MainSystem, side: FloatingBoreSide) -> tuple[np.ndarray, np.ndarray]:
@@ -245,8 +242,7 @@ def _settle_body(
     films = [*others, _starting_film(model, sides, surface.held())]
     # films on journals first, because the first film decides about centrifugal growth
     films.sort(key=lambda film: not isinstance(film.model, TurningModel))
-    start = _equilibrium(films)
-    if start is not None:
+    if (start := _equilibrium(films)) is not None:
         mbs.SetNodeParameter(node, "initialCoordinates", start.tolist())
         mbs.SetNodeParameter(node, "initialCoordinates_t", _standing_rates(films, start).tolist())
         put = np.array(mbs.GetNodeParameter(node, "initialCoordinates"))

@@ -71,8 +71,7 @@ class FilmDisplay:
 
     def take(self, trial: Trial) -> None:
         """Store the data for drawing a film, which must be the last evaluated one."""
-        film = getattr(trial.evaluation, "film", None)
-        if film is None:
+        if (film := getattr(trial.evaluation, "film", None)) is None:
             return
         model: Any = self.element.model
         clearance = model.bearing.radial_clearance

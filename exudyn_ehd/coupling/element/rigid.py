@@ -157,8 +157,7 @@ class FilmElement:
         memory = self.steps.film_memory if time >= self.steps.start else None
         step = 0.0 if memory is None else time - self.steps.start
         begin = self.steps.begin if stepping else None
-        if begin is not None and not time > begin.time:
-            begin = None
+        begin = begin if begin is not None and time > begin.time else None
         last = self.last
         known = last is not None and last.q == q and last.q_t == q_t and last.step == step and last.memory is memory
         if last is not None and known and last.begin is begin:
