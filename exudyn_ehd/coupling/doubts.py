@@ -393,9 +393,7 @@ class GridWatch:
 
     def take(self, time: float, peak: float, film: object) -> None:
         """Add the film of an accepted step, which has a peak pressure, Pa."""
-        if not (peak > self._peak and isinstance(film, SolvedFilm)):
-            return
-        if is_judged(film):
+        if peak > self._peak and isinstance(film, SolvedFilm) and is_judged(film):
             self._peak, found = peak, resolution(film)
             self._coarse = (time, found) if found.is_coarse else None
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, TypeAlias, cast
+from typing import Any, ClassVar, TypeAlias, cast
 
 import exudyn as exu
 
@@ -20,7 +20,7 @@ from exudyn_ehd.coupling.contract import CURRENT, Trial
 from exudyn_ehd.coupling.kinematics.relative import BoreGap
 from exudyn_ehd.joint.spherical.steady import TOUCHING
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
-from exudyn_ehd.status import InputError, require_bool, require_number, require_type, warn_user
+from exudyn_ehd.status import Checked, InputError, require_bool, require_number, require_type, warn_user
 
 Solver: TypeAlias = exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic | exu.MainSolverExplicit
 Stored: TypeAlias = tuple[Solver | None, Solver | None]
@@ -231,8 +231,8 @@ def ConfigureSolver(
         require_number("ConfigureSolver.absoluteTolerance", absoluteTolerance, "N", above=0.0)
     alpha = simulationSettings.timeIntegration.generalizedAlpha
     if spectralRadius is not None:
-        radius = require_number("ConfigureSolver.spectralRadius", spectralRadius, at_least=0.0, at_most=1.0)
-        alpha.spectralRadius = radius
+        where = "ConfigureSolver.spectralRadius"
+        alpha.spectralRadius = require_number(where, spectralRadius, at_least=0.0, at_most=1.0)
     elif alpha.spectralRadius == exu.SimulationSettings().timeIntegration.generalizedAlpha.spectralRadius:
         alpha.spectralRadius = USUAL_RADIUS
     for solver in (simulationSettings.timeIntegration, simulationSettings.staticSolver):
@@ -245,7 +245,7 @@ def ConfigureSolver(
 
 
 @dataclass(frozen=True, kw_only=True)
-class StepControl:
+class StepControl(Checked):
     """Step control: limit the change of the gap in a step, or choose the steps of a run by their error.
 
     **Of a joint** (``CreateLubricatedJoint(stepControl=StepControl(largest_gap_change=0.1))``): for journals that fall
@@ -290,17 +290,20 @@ class StepControl:
     largest_gap_change: float = 0.25
     error: float | None = None
 
+    checks: ClassVar = {
+        "largest_gap_change": partial(
+            require_number, at_least=0.01, at_most=1.0, hint="leave the control out with stepControl=None."
+        ),
+        "error": partial(require_number, at_least=1e-4, at_most=0.5),
+    }
+
     def __post_init__(self) -> None:
-        hint = "leave the control out with stepControl=None."
-        where = "StepControl.largest_gap_change"
-        require_number(where, self.largest_gap_change, at_least=0.01, at_most=1.0, hint=hint)
-        if self.error is not None:
-            require_number("StepControl.error", self.error, at_least=1e-4, at_most=0.5)
-            if self.largest_gap_change != StepControl.largest_gap_change:
-                raise InputError(
-                    "StepControl: error is for a whole run, largest_gap_change for one joint; give one StepControl to "
-                    "SolveDynamic and another to CreateLubricatedJoint."
-                )
+        super().__post_init__()
+        if self.error is not None and self.largest_gap_change != StepControl.largest_gap_change:
+            raise InputError(
+                "StepControl: error is for a whole run, largest_gap_change for one joint; give one StepControl to "
+                "SolveDynamic and another to CreateLubricatedJoint."
+            )
 
 
 def require_of_joint(where: str, control: object) -> None:

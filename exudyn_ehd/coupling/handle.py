@@ -237,8 +237,7 @@ class LubricatedJoint(Joint, FilmPictures, HistoryPictures):
         """
         from exudyn_ehd.pictures.files import animate
 
-        films = self.films
-        if not films:
+        if not (films := self.films):
             raise InputError(
                 f"LubricatedJoint.animate: no films of joint '{self.name}' were kept; call joint.record_films() before "
                 "the run."

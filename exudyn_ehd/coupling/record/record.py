@@ -233,8 +233,7 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
             return history_of(lambda _: [rows.mapped()], dimensions)
         part = between(rows.mapped(), start, end)
         return history_of(lambda _: [part], dimensions).between(start, end)
-    values = read_arrays(path, FORMAT)
-    if values is None:
+    if (values := read_arrays(path, FORMAT)) is None:
         raise InputError(
             f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
         )

@@ -268,8 +268,7 @@ def _search(
 ) -> Iterator[EquilibriumSearch]:
     """Context with a search in a system, whose states and films are restored at the end."""
     require_system(WHERE, mbs, assembled=True)
-    joints = joints_of(mbs)
-    if not joints:
+    if not (joints := joints_of(mbs)):
         raise InputError(f"{WHERE}: the system has no lubricated joint; create its bearings by CreateLubricatedJoint.")
     for joint in joints:
         joint.element.presence.require(mbs)

@@ -183,8 +183,7 @@ class EquilibriumSearch:
         out = []
         for film in self.films:
             self.count += 1
-            evaluation = film.evaluate()
-            if evaluation is None:
+            if (evaluation := film.evaluate()) is None:
                 return None
             # each film has a separate model, so that the tangent belongs to this evaluation
             out.append((evaluation, evaluation.steady_tangent(exact=True)))
@@ -235,8 +234,7 @@ class EquilibriumSearch:
         """Films and tangents of an equilibrium; None if none was found."""
         system = self.system
         for _ in range(SETTLING_STEPS):
-            films = self._films()
-            if films is None:
+            if (films := self._films()) is None:
                 return None
             balance = self._balance([(e.wrench, tangent) for e, tangent in films])
             settled = balance.residual < max(TOLERANCE, balance.rounding)

@@ -305,8 +305,7 @@ class GapLimit:
         """
         part = 1.0
         for film in self.films:
-            last = film.last
-            if last is not None:
+            if (last := film.last) is not None:
                 after = film.motion(mbs, CURRENT)
                 allowed = allowed_part(self.bores[film], last.bodies, after)
                 part = min(part, allowed, self._allowed_at_end(film, last, after))

@@ -147,8 +147,7 @@ def load_state(path: str | pathlib.Path) -> SystemState:
             f"SolveDynamic.restart must be a SystemState or the path of a file written by SaveState, got {path!r}."
         )
     require_path("SolveDynamic.restart", path)
-    arrays = read_arrays(path, _FORMAT)
-    if arrays is None:
+    if (arrays := read_arrays(path, _FORMAT)) is None:
         raise InputError(
             f"SolveDynamic.restart: '{path}' is damaged or holds no state of this version; give a file written by "
             "SaveState."

@@ -206,9 +206,7 @@ class StepSize:
             if period > SMALL * self.usual:
                 stops.append(self.begin + period * (math.floor((time - self.begin) / period + SMALL) + 1))
         rest = min(stops) - time
-        if self.size >= rest * (1.0 - SMALL):
-            return rest
-        return min(self.size, 0.5 * rest)
+        return rest if self.size >= rest * (1.0 - SMALL) else min(self.size, 0.5 * rest)
 
 
 @contextmanager
