@@ -83,8 +83,7 @@ def field_values(film: FilmRecord, field: MapField) -> np.ndarray:
     InputError
         If the film has none.
     """
-    values = getattr(film, field.name, None)
-    if values is None:
+    if (values := getattr(film, field.name, None)) is None:
         joints = "" if hasattr(film, field.name) else " Films of joints have it: joint.film()."
         raise InputError(f"plot_{field.name}: this film has no {field.text}; {field.absent}{joints}")
     return np.broadcast_to(np.asarray(values, dtype=float), film.pressure.shape)

@@ -32,10 +32,8 @@ from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.pictures.records import Axes, Figure, Target
 from exudyn_ehd.progress import is_shown
 from exudyn_ehd.status import EHDError, InputError, did_you_mean, require_integer, require_number
-from exudyn_ehd.studies.rows import Row, RowFile, require_executor, rows_of
+from exudyn_ehd.studies.rows import WHERE, Row, RowFile, require_executor, rows_of
 from exudyn_ehd.tables import Table
-
-_WHERE = "parameter_study"
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -244,8 +242,7 @@ def varied(bearing: JournalBearing, parameters: Mapping[str, float]) -> JournalB
     """
     values: dict[str, Any] = dict(parameters)
     known = ("journal_radius", "length", "radial_clearance", "viscosity")
-    unknown = sorted(set(values) - set(known))
-    if unknown:
+    if unknown := sorted(set(values) - set(known)):
         raise InputError(
             f"varied: parameters must be among {', '.join(known)} (of an EquilibriumPoint also speed, load), got "
             f"{', '.join(unknown)}; "
@@ -345,25 +342,25 @@ def _checked_parameters(parameters: Mapping[str, Sequence[float]]) -> dict[str, 
         numbers_only = np.ndim(values) == 1 and all(isinstance(v, numbers.Real) for v in values)
         if not isinstance(name, str) or name in ("seconds", "error") or not numbers_only or len(values) == 0:
             raise InputError(
-                f"{_WHERE}.parameters must be a dict of names and lists of numbers, got {name!r}: {values!r}."
+                f"{WHERE}.parameters must be a dict of names and lists of numbers, got {name!r}: {values!r}."
             )
         whole = all(isinstance(v, numbers.Integral) for v in values)
         lists[name] = [int(v) if whole else float(v) for v in values]
     if not lists:
-        raise InputError(f"{_WHERE}.parameters is empty; give at least one list, e.g. {{'speed': [100.0, 200.0]}}.")
+        raise InputError(f"{WHERE}.parameters is empty; give at least one list, e.g. {{'speed': [100.0, 200.0]}}.")
     return lists
 
 
 def _require_place(processes: int, executor: Executor | None, mpi: bool, hosts: Sequence[str]) -> None:
-    require_integer(f"{_WHERE}: processes", processes, at_least=1)
+    require_integer(f"{WHERE}: processes", processes, at_least=1)
     if mpi or hosts:
         raise InputError(
-            f"{_WHERE}: mpi and hosts are not supported any more; give executor=mpi4py.futures.MPIPoolExecutor() for "
+            f"{WHERE}: mpi and hosts are not supported any more; give executor=mpi4py.futures.MPIPoolExecutor() for "
             "MPI, or executor=dask.distributed.Client(...).get_executor() for hosts."
         )
     if executor is not None:
         if processes > 1:
-            raise InputError(f"{_WHERE}: only one of processes and executor can be given, got both.")
+            raise InputError(f"{WHERE}: only one of processes and executor can be given, got both.")
         require_executor(executor)
 
 
@@ -371,11 +368,10 @@ def _table(
     places: dict[str, np.ndarray], lists: dict[str, list[float]], rows: list[Row], units: dict[str, str]
 ) -> StudyTable:
     if all(row.error for row in rows):
-        raise EHDError(f"{_WHERE}: all {len(rows)} rows failed, the first with {rows[0].error}")
+        raise EHDError(f"{WHERE}: all {len(rows)} rows failed, the first with {rows[0].error}")
     names = list(dict.fromkeys(name for row in rows for name in row.results))
-    shared = sorted(set(names) & set(places))
-    if shared:
-        raise InputError(f"{_WHERE}.function must not return results named as parameters, got {', '.join(shared)}.")
+    if shared := sorted(set(names) & set(places)):
+        raise InputError(f"{WHERE}.function must not return results named as parameters, got {', '.join(shared)}.")
     columns = places | {name: np.array([row.results.get(name, math.nan) for row in rows]) for name in names}
     columns["seconds"] = np.array([row.seconds for row in rows])
     return StudyTable(

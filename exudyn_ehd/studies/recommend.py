@@ -157,8 +157,7 @@ def recommend(
     ratio = bearing.length / (2.0 * bearing.journal_radius)
     place = f"L/D {ratio:.3g}, eps {low:g} to {high:g}, tilt {tilt_ratio:g}"
     asked = ("L/D", ratio), ("tilt_ratio", tilt_ratio), ("eccentricity_ratio", low), ("eccentricity_ratio", high)
-    unknown = _unknown(bearing, quantity, asked)
-    if unknown:
+    if unknown := _unknown(bearing, quantity, asked):
         return Recommendation(found=False, reason=f"nothing is known of this bearing: {unknown}.")
     count = 1 + math.ceil((high - low) / SPACING - 1e-9)
     ratios = np.linspace(low, high, count)

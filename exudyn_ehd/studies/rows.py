@@ -21,7 +21,7 @@ from exudyn_ehd.storage import fingerprint
 Point = dict[str, Any]
 Function = Callable[[Point], Any]
 _FORMAT = "exudyn_ehd parameter_study 1"
-_WHERE = "parameter_study"
+WHERE = "parameter_study"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -103,7 +103,7 @@ def _on_executor(function: Function, points: Mapping[int, Point], executor: Exec
                 continue
             if not isinstance(future, Future):
                 raise InputError(
-                    f"{_WHERE}: executor must hand out futures of concurrent.futures, got those of {executor!r}; of a "
+                    f"{WHERE}: executor must hand out futures of concurrent.futures, got those of {executor!r}; of a "
                     "dask Client give client.get_executor()."
                 )
             futures[future] = index
@@ -119,11 +119,11 @@ def require_executor(executor: object) -> None:
     """Raise `InputError` for an object that is no executor, and for threads."""
     if not callable(getattr(executor, "submit", None)):
         raise InputError(
-            f"{_WHERE}: executor must have a method submit like those of concurrent.futures, got {executor!r}."
+            f"{WHERE}: executor must have a method submit like those of concurrent.futures, got {executor!r}."
         )
     if isinstance(executor, ThreadPoolExecutor):
         raise InputError(
-            f"{_WHERE}: executor must compute in processes, got {type(executor).__name__}: threads of one process take "
+            f"{WHERE}: executor must compute in processes, got {type(executor).__name__}: threads of one process take "
             "turns in Python and share its log; use concurrent.futures.ProcessPoolExecutor(...)."
         )
 
@@ -134,7 +134,7 @@ def require_picklable(function: Any) -> None:
         pickle.dumps(function)
     except (pickle.PicklingError, AttributeError, TypeError) as error:
         raise InputError(
-            f"{_WHERE}.function can't be sent to other processes ({error}); define it at the top of a module, not as a "
+            f"{WHERE}.function can't be sent to other processes ({error}); define it at the top of a module, not as a "
             "lambda or inside another function."
         ) from None
 

@@ -154,8 +154,7 @@ def recommend_steps(
             changes.append(float(np.max(np.abs(runs[-1][::2] - runs[-2]))) / floor)
             evidence.append(f"{steps // 2} to {steps} steps a period: {100.0 * changes[-1]:.2g} %")
         bounds = _bounds(changes)
-        kept = [k for k, bound in enumerate(bounds) if bound <= error]
-        if kept:
+        if kept := [k for k, bound in enumerate(bounds) if bound <= error]:
             # those of the finest run; warnings of coarser ones are about steps that nobody takes
             for text, kind in {(str(w.message), w.category) for w in caught}:
                 warn_user(text, kind)
