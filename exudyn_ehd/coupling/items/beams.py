@@ -122,17 +122,16 @@ def _place_on_cable(where: str, dimension: int, reference: np.ndarray, length: f
         x += step
         if abs(step) < 1e-14 * length:
             break
-    return _within(where, x, 0.0, length)
+    return _within(where, x, length)
 
 
-def _within(where: str, x: float, low: float, high: float) -> float:
-    margin = SMALL * (high - low)
-    if not low - margin <= x <= high + margin:
+def _within(where: str, x: float, length: float) -> float:
+    if not -SMALL * length <= x <= (1.0 + SMALL) * length:
         raise InputError(
-            f"CreateLubricatedJoint.position must lie on the element of {where}, which spans {low:g} to {high:g} m "
+            f"CreateLubricatedJoint.position must lie on the element of {where}, which spans 0 to {length:g} m "
             f"along its axis, got {x:.6g} m; give the element of the beam that carries the joint, or move the joint."
         )
-    return min(max(x, low), high)
+    return min(max(x, 0.0), length)
 
 
 def beam_side(
@@ -143,7 +142,7 @@ def beam_side(
         start, end = (side.frame[:, 3] for side in ends)
         along = end - start
         length = float(np.linalg.norm(along))
-        share = _within(where, float((point - start) @ along) / length, 0.0, length) / length
+        share = _within(where, float((point - start) @ along) / length, length) / length
     return BeamSide(ends, share, point, rotation)
 
 
@@ -171,7 +170,7 @@ def marker_on_body(
     data = mbs.GetObject(body)
     if "length" in data:
         half = 0.5 * float(data["length"])
-        local[0] = _within(where, local[0] + half, 0.0, 2.0 * half) - half
+        local[0] = _within(where, local[0] + half, 2.0 * half) - half
     marker = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=body, localPosition=local.tolist()))
     _, matrix = reference_pose(mbs.GetObjectOutputBody, body, local.tolist())
     return MarkerSide(marker, list(nodes), matrix.T @ rotation)
