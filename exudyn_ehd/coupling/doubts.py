@@ -314,8 +314,7 @@ def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
     deflection = STEEL_COMPLIANCE * b.journal_radius * highest / STEEL["youngs_modulus"]
     thickening = PIEZOVISCOSITY.coefficient * highest
     reynolds = b.lubricant.density * speed * b.radial_clearance / b.lubricant.viscosity
-    # a gap that has closed has no shear rate
-    rate = speed / thinnest if thinnest > 0.0 else math.inf
+    rate = speed / max(thinnest, SMALLEST_GAP_SHARE * b.radial_clearance)
     found = {
         f"elasticity: {1e6 * deflection:.3g} um of a steel ring": b.bush is None
         and deflection > LIMITS["elasticity"].value * thinnest,

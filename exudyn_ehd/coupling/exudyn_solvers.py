@@ -362,10 +362,10 @@ class GapWatch:
         """Smallest gaps of bore and end faces."""
         return [self.bore.smallest(trial.motion), math.nan if trial.faces is None else trial.faces.minimum_gap]
 
-    def start(self, trial: Trial, film: float | None) -> None:
-        """Store the gaps at the start of a step; ``film``: minimum film thickness in a bore that wears or deflects."""
+    def start(self, trial: Trial, film: float) -> None:
+        """Store the gaps at the start of a step; ``film``: minimum film thickness there, nan if it is unknown."""
         bore, faces = self.before = self._gaps(trial)
-        self.sizes = [max(bore if film is None else film, self.ranges[0]), max(faces, self.ranges[1])]
+        self.sizes = [max(bore if math.isnan(film) else film, self.ranges[0]), max(faces, self.ranges[1])]
 
     def rejects(self, trial: Trial, solver: Solver | None) -> bool:
         """Return whether the step to this state is too coarse and can be repeated."""

@@ -132,8 +132,6 @@ class AcceptedSteps:
         self.recorder: FilmRecorder | None = None
         self.observers: list[Callable[[Trial], None]] = []
         self.record = Record(film.model.bearing)
-        # the gap of a bore that wears or deflects differs from that of the rigid surfaces
-        self._makes_room = any(getattr(film.model.bearing, part, None) is not None for part in ("bush", "wear"))
         self._uses_memory = self.in_own_run = self.chosen = False
         self.unseen = 0
         self.tangent: np.ndarray | None = None
@@ -177,7 +175,7 @@ class AcceptedSteps:
         trial, row = self._look(mbs, start, START_OF_STEP)
         self.begin = self._begin_of_next(start, trial)
         if self.control is not None:
-            self.control.start(trial, row[MINIMUM_GAP] if row is not None and self._makes_room else None)
+            self.control.start(trial, np.nan if row is None else row[MINIMUM_GAP])
         if row is not None:
             # a resumed state was recorded at the end of its step
             if not resumed or start > self.record.last_time:

@@ -17,7 +17,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.relative import BoreGap, eccentricity_ratios
-from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE
+from exudyn_ehd.coupling.record.history import FORCE, MINIMUM_GAP, PEAK_PRESSURE
 from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.joint.balance.limits import (
     HIGHEST_MEAN,
@@ -148,7 +148,7 @@ class Failures:
         if pressure > self._bearable:
             return FilmError(self.overloaded(time, row, trial.motion))
         on_faces = None if trial.faces is None else self._absurd_faces(time, trial.faces)
-        return on_faces or self._beyond_limit(time, row, trial, pressure) or self._pressed_through(time, trial)
+        return on_faces or self._beyond_limit(time, row, trial, pressure) or self._pressed_through(time, row, trial)
 
     def _absurd_faces(self, time: float, faces: ThrustEvaluation) -> FilmError | None:
         """Error of a collar that penetrates its contact too deeply, or with too high a pressure; None if valid."""
@@ -240,14 +240,10 @@ class Failures:
             MemoryWarning,
         )
 
-    def _pressed_through(self, time: float, trial: Trial) -> FilmError | None:
-        """Error of a journal that is deeper in a rigid bore than any contact explains; None if it is not."""
-        bearing = self.bearing
-        if getattr(bearing, "bush", None) is not None:
-            return None
-        wear = getattr(trial.memory, "wear", None)
-        worn = 0.0 if wear is None else float(wear.max())
-        if self.bore.smallest(trial.motion) >= -(1.0 + worn) * bearing.radial_clearance:
+    def _pressed_through(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
+        """Error of a journal that is deeper in its bore than any contact explains; None if it is not."""
+        # nan for pads, which have no bore
+        if not row[MINIMUM_GAP] < -self.bearing.radial_clearance:
             return None
         return self._at(
             time,

@@ -206,9 +206,9 @@ class SphericalFilm:
         if status is not Status.CONVERGED or not np.isfinite(s.pressure.sum()):
             return (Status.NOT_CONVERGED if status is Status.CONVERGED else status), None
         oil = s.oil_fields(self.law, None)
-        if oil is None or oil.beyond:
+        if oil is None:
             return Status.NO_PRESSURE, None
-        return status, self._loads(motion, oil, (temperature, past, step))
+        return Status.NO_PRESSURE if oil.beyond else status, self._loads(motion, oil, (temperature, past, step))
 
     def _set_gap(self, motion: np.ndarray) -> tuple[float, float]:
         """Write gap and storage into the solver's buffers, and set wall pressures and the limiter's slopes.

@@ -36,6 +36,8 @@ class SphericalEvaluation:
     minimum_gap : float
         Minimum gap of the rigid surfaces, exact, m.
     film : BallFilm or None
+        None if ``status`` is not CONVERGED, except for films beyond the end of a pressure law (NO_PRESSURE), whose
+        forces lead Newton's method back.
     """
 
     status: Status
@@ -239,13 +241,15 @@ def steady_history(model: SphericalModel, motion: np.ndarray, where: str = "audi
         return History(temperature=T) if known is None else replace(known, temperature=T)
 
     def rise(T: float) -> float:
-        film = model.evaluate(motion, memory(T)).film
-        return math.inf if film is None or thermal is None else thermal.steady_temperature(film) - T  # type: ignore[arg-type]
+        found = model.evaluate(motion, memory(T))
+        if found.status is not Status.CONVERGED or thermal is None:
+            return math.inf
+        return thermal.steady_temperature(cast(SolvedFilm, found.film)) - T
 
     if thermal is None:
         return memory(None)
     low = min(thermal.supply, thermal.housing)
-    if model.evaluate(motion, memory(low)).film is None:
+    if model.evaluate(motion, memory(low)).status is not Status.CONVERGED:
         return memory(low)
     if not (change := rise(low)) < math.inf:
         raise FilmError(f"{where}: the film is heated, and its heat has no way out; {WAY_OUT}")

@@ -42,7 +42,7 @@ from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY
 from exudyn_ehd.joint.spherical.model import SphericalEvaluation, SphericalModel, steady_history
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.pictures.records import Figure, PolarAxes, Target, shown
-from exudyn_ehd.status import FilmError, require_type, require_vector
+from exudyn_ehd.status import FilmError, Status, require_type, require_vector
 
 # Gap over the composite roughness below which asperities carry, where a typical wall begins; upper bound of this onset,
 # over the clearance.
@@ -344,7 +344,7 @@ def steady_spherical(
 def result_of(found: SphericalEvaluation, where: str) -> SphericalResult:
     """Return the result of an evaluation, the last one of its model; errors in the name of ``where``."""
     film, motion, model, bearing = found.film, found.motion, found.model, found.model.bearing
-    if film is None:
+    if film is None or found.status is not Status.CONVERGED:
         raise FilmError(
             f"{where}: {found.status.name} at place {motion[PLACE]} m, minimum film thickness "
             f"{found.minimum_gap:.3g} m: {advice(found.status, bearing)}"

@@ -32,7 +32,7 @@ def bearing(bush=None, **options):
     return ehd.JournalBearing(bush=bush, **(given | options))
 
 
-def scene(described, *, moving=False, load=(1e3, -1.5e4), spin_angle=0.0):
+def scene(described, *, moving=False, load=(1e3, -1.5e4), spin_angle=0.0, control=None):
     """A journal that spins in a bearing on ground, or on a body that turns and flies."""
     mbs = new_system()
     A, turn, fly = np.eye(3), np.zeros(3), [0.0, 0.0, 0.0]
@@ -54,7 +54,8 @@ def scene(described, *, moving=False, load=(1e3, -1.5e4), spin_angle=0.0):
         inertia=InertiaCylinder(7800, 0.3, 0.03, 2),
     )
     held = ehd.Free() if moving else ehd.Held()
-    joint = ehd.CreateLubricatedJoint(mbs, "pin", [housing, journal], [0, 0, 0], list(A[:, 2]), described, axial=held)
+    items, axis = [housing, journal], list(A[:, 2])
+    joint = ehd.CreateLubricatedJoint(mbs, "pin", items, [0, 0, 0], axis, described, axial=held, stepControl=control)
     if not moving:
         marker = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=journal))
         mbs.AddLoad(eii.LoadForceVector(markerNumber=marker, loadVector=[*load, 0]))
@@ -99,6 +100,22 @@ def test_run_to_rest_is_the_equilibrium():
     assert np.abs(motion[:2] - found.position).max() < 2e-3 * C
     assert np.abs(q - found.film.bore_coordinates).max() < 2e-3 * np.abs(q).max()
     assert joint.history.minimum_gap[-1] == pytest.approx(found.film.minimum_gap, rel=2e-3)
+
+
+@pytest.mark.parametrize("control", [None, ehd.StepControl(largest_gap_change=0.5)])
+def test_a_soft_journal_bends_by_more_than_the_clearance(control):
+    """Rigid surfaces would be pressed through each other by more than the clearance, but the film is open.
+
+    A step control looks at the film's thickness, not at the gap of rigid surfaces, which is closed.
+    """
+    soft = ehd.SaintVenantKirchhoff(youngs_modulus=3e9, poisson_ratio=0.3, density=7800.0)
+    pin = ehd.ElasticJournal(material=soft, span=(-0.08, 0.08), held=BOSSES, inner_radius=0.015, tolerance=0.2)
+    described = bearing(journal=pin, contact=ehd.RegularisedWall(onset=2e-6))
+    mbs, joint, _ = scene(described, load=(0.0, -1e4), control=control)
+    ehd.SolveDynamic(mbs, settings(4e-4, 8, tolerance=1e-8))
+    history = joint.history
+    assert history.largest_eccentricity_ratio[-1] > 2.5 and history.minimum_gap.min() > 0.5e-6
+    assert history.time.size < 100
 
 
 @pytest.mark.slow

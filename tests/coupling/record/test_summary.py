@@ -194,8 +194,9 @@ def test_a_run_that_ends_with_an_error_has_its_line(lines):
             ("elasticity",),
             ("roughness",),
         ),
+        (200e3, {"contact": ehd.RegularisedWall(onset=1e-5, pressure=1e8)}, ("thickness -", "thinning"), ("inf",)),
     ],
-    ids=["light", "heavy", "rough"],
+    ids=["light", "heavy", "rough", "pressed into a soft wall"],
 )
 def test_effects_left_out_are_named_where_they_matter(lines, load, options, named, absent):
     mbs, _ = scene(load, **options)
