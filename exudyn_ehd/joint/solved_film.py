@@ -169,6 +169,9 @@ class FilmParts:
     supply : SupplyMap or None
     mixing : list of (n, m) bool arrays
         Vertices of the areas in which oil mixes: supply areas, or grooves between arcs.
+    grooves : (n, m) array
+        1 on the edges of arcs; at vertices of grooves and pockets in the bore that have a given pressure the share of
+        the row's width that they cover; 0 elsewhere. They take in the oil that reaches them along theta.
     contacts, limiter : buffers or None
     half_length : float
         Half the bearing's length over the reference length.
@@ -189,6 +192,7 @@ class FilmParts:
     liner: LinerFilm | None
     supply: SupplyMap | None
     mixing: list[np.ndarray]
+    grooves: np.ndarray
     contacts: ContactFields | None
     limiter: LimiterFields | None
     half_length: float

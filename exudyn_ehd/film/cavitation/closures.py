@@ -194,10 +194,12 @@ class SwiftStieber(_Ruptures):
     The standard model for steadily loaded bearings. The pressure is at least the cavity pressure everywhere; oil in the
     cavity is not counted (`ElrodAdams` does). Cheaper than `Gumbel` here, because only the full film is factored.
 
-    A cavity stays full where its gap widens. A supply area behind it receives this oil, so that the area's own flow is
-    too small or even negative, and the film too cold: with a groove of 0.5 bar where the gap is largest (L/D 0.8,
-    eccentricity ratio 0.6) ``supply_flows`` is -0.7 cm3/s in place of 3.3. Take `ElrodAdams` for flows and temperatures
-    of bearings with grooves. On arcs, `FilmEnergy` and `LumpedThermal` omit this oil.
+    A cavity stays full where its gap widens. ``supply_flows`` omits this oil for grooves along the axis and pockets in
+    the bore that have a given pressure. A groove over at least 0.6 of the length, within 45 degrees of the largest gap,
+    feeds 0.75 to 1.1 times the flow of `ElrodAdams` (one of low pressure at a high eccentricity ratio 0.4 times). In
+    front of other areas the oil is counted, so that their flow is too small or even negative. With `FilmEnergy` and
+    `LumpedThermal` it cools the film, except on arcs: mean rises of grooved films are down to half of the true ones,
+    ``oil_flow`` is up to twice too large. Take `ElrodAdams` for temperatures of films with supply areas.
 
     With the rupture line inside the cells of the grid the error of stiffness and damping is at most 1.5 % in any
     direction (default grid, eccentricity ratio up to 0.9, L/D 0.25 to 2). On vertices it is up to 13 %, in two thirds

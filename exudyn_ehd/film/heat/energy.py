@@ -206,6 +206,31 @@ def pass_on(x, couette, found, edges, spin):
     return less
 
 
+@njit(cache=True)
+def gather_made(found, walls, spin):
+    """Oil (n, m) that a cavitation model makes between two walls, gathered at the wall to which the sliding takes it.
+
+    Parameters
+    ----------
+    found : (n, m) array
+        Oil that the model makes, below 0 where it loses oil.
+    walls : (n, m) array
+        Shares of the rows' width that the walls cover, 0 elsewhere. Rows without a wall stay out.
+    spin : float
+        Its sign is that of the sliding.
+    """
+    out, way, n = np.zeros_like(found), 1 if spin > 0.0 else -1, len(found)
+    for j in range(found.shape[1]):
+        first, made = walls[:, j].argmax(), 0.0
+        for k in range(1, n + 1 if walls[first, j] > 0.0 else 0):
+            i = (first + way * k) % n
+            if walls[i, j] > 0.0:
+                out[i, j], made = walls[i, j] * made, 0.0
+            else:
+                made += found[i, j]
+    return out
+
+
 def content_rate(
     H: np.ndarray, H_t: np.ndarray, fill: np.ndarray, mass_old: np.ndarray, inverse_step: float, squeeze: bool
 ) -> np.ndarray:

@@ -39,19 +39,19 @@ from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, seen_by_faces
 from exudyn_ehd.joint.time_step import part_that_closes
-from exudyn_ehd.status import ROUNDING, SMALL, FilmError, Status
+from exudyn_ehd.status import SMALL, FilmError, Status
 
-# Tolerance of the unbalance, as a share of the load. A temperature's change, as a share of the film's rise over its
-# coldest source, has the tolerance `SETTLED`, or `ROUNDING` where round-off stops the search before.
+# Tolerance of the unbalance, as a share of the load; `ROUNDED` at the end of a slow search. A temperature's change, as
+# a share of the film's rise over its coldest source, has the tolerance `SETTLED`; `SMALL` at the end of a slow search.
 LOAD_TOLERANCE = 1e-10
 # Largest number of rounds of a search; number of rounds from a film nearby, of rounds in a row whose error does not
 # fall below `FALLS` times the smallest error, and of past rounds that Anderson's acceleration combines. Larger: a
 # hopeless search gives up later; smaller: slow ones fail.
 ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
 # Damping factor of steps below which a search without progress gives up. Smaller: hopeless searches take longer.
-WEAKEST = 0.1
+WEAKEST = 0.02
 # Changes of the temperature in K: the largest one in a round, of the same scaled size as a move by the clearance;
-# the one below which Anderson's acceleration is used.
+# the root mean square below which Anderson's acceleration is used, whatever few vertices at the edge of a groove do.
 LARGEST_CHANGE, ACCELERATED = 50.0, 5.0
 # Temperature in K above which a search fails. It is far above `HOTTEST`, because films during a search may be hotter
 # than the solution.
@@ -193,7 +193,7 @@ class Balance:
         """The larger of the residual and of the temperature's change over `LARGEST_CHANGE`."""
         return max(self.residual(place), float(np.abs(place.change).max(initial=0.0)) / LARGEST_CHANGE)
 
-    def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = ROUNDING) -> bool:
+    def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = SMALL) -> bool:
         """Return whether the residual is below a tolerance, and the change of the temperature negligible."""
         T, change = place.temperature, place.change
         if self.residual(place) > tolerance or not change.size:
@@ -226,7 +226,7 @@ class Balance:
         best, smallest, idle, part, damping, highest = here, self.error(here), 0, 1.0, 1.0, 1e12 * resistance
         for _ in range(rounds):
             # so near to the end that Anderson's acceleration helps
-            if self.rough and self.residual(here) < 1.0 and np.abs(here.change).max(initial=0.0) < ACCELERATED:
+            if self.rough and self.residual(here) < 1.0 and mean_change(here) < ACCELERATED:
                 self.rough = False
                 best = here = self.at(here.motion, here.temperature)
                 past, smallest = [], self.error(here)
@@ -240,7 +240,7 @@ class Balance:
             step = self._step(here, resistance)
             unknowns = np.append(here.motion[self.free], here.temperature) / self._scales(here.change.size)
             past = [*past, (unknowns, step)][-min(PATIENCE, step.size) - 1 :]
-            if not here.change.size or np.abs(here.change).max() >= ACCELERATED:
+            if not here.change.size or mean_change(here) >= ACCELERATED:
                 past = []
             accelerated = damping * step - (foreseen(past, damping) if len(past) > 1 else 0.0)
             try:
@@ -419,3 +419,8 @@ def evaluate_at(
     found = balance.at(motion, balance.cold)
     require_bearable(found.film, where)
     return found
+
+
+def mean_change(place: Place) -> float:
+    """Root mean square of a place's temperature changes, K."""
+    return float(norm(place.change)) / math.sqrt(max(place.change.size, 1))

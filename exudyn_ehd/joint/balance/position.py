@@ -21,7 +21,7 @@ from exudyn_ehd.joint.balance.newton import (
     Place,
     gaps_of_arcs,
 )
-from exudyn_ehd.joint.bore.equilibrium import HALVINGS
+from exudyn_ehd.joint.bore.equilibrium import HALVINGS, ROUNDED
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import SMALL, FilmError, InputError, warn_user
 
@@ -90,7 +90,7 @@ class LoadSearch(Balance):
             return None
         self.nearest = found
         hot = found.change.size and is_above(HOTTEST, found.temperature)
-        return found if self.is_balanced(found, tolerance) and not hot else None
+        return found if self.is_balanced(found, max(tolerance, ROUNDED)) and not hot else None
 
     def loaded(self, motion: np.ndarray, ratio: float) -> np.ndarray:
         """Return the motion with the journal moved along the load, by a ``ratio`` of the way from centre to bore."""

@@ -11,7 +11,15 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.bearing import MaximumGap
-from exudyn_ehd.film.heat.energy import content_rate, end_flows_around, film_flows, film_heat, outside_flows, pass_on
+from exudyn_ehd.film.heat.energy import (
+    content_rate,
+    end_flows_around,
+    film_flows,
+    film_heat,
+    gather_made,
+    outside_flows,
+    pass_on,
+)
 from exudyn_ehd.film.solvers.film import ends_of_cavities
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
@@ -114,6 +122,8 @@ class OilFlows:
         Flow that enters with the supply temperature, and flow that leaves with the film's temperature; their difference
         is ``outside``. In areas that mix, only the sums over the area are meaningful: single values of ``leaving`` may
         be negative.
+    made : (n, m) array
+        Oil that a cavitation model makes which does not conserve mass, below 0 where it drops oil.
     found, lost : (n, m) arrays
         Where a cavitation model does not conserve mass: oil that it makes, and oil that it drops. Not the oil that it
         makes on an arc as the gap of a cavity widens: `pass_on` subtracts it up to the edge at which the arc ends.
@@ -160,7 +170,8 @@ class OilFlows:
         if not conserves and film.grid.flows_along_z and isinstance(film.parts.bearing.inlet, MaximumGap):
             self.lines = [(np.arange(len(fixed)) == 0)[:, None] & (np.abs(film.grid.z) < film.grid.z[-1])]
             self.outside[self.lines[0]] = 0.0
-        found = s.nothing if conserves else balance - self.outside
+        self.made = s.nothing if conserves else balance - self.outside
+        found = self.made.copy()
         makes_oil = film.grid.edges.size and not conserves
         self.passed = pass_on(self.x, fx, found, film.grid.edges, film.journal.omega) if makes_oil else s.nothing
         self.outside += self.passed
@@ -221,6 +232,11 @@ class OilFlows:
             out += np.roll(np.where(after & ~inside, np.maximum(flow, 0.0), 0.0), 1, axis)
             out += np.where(inside & ~after, np.maximum(-flow, 0.0), 0.0)
         return out
+
+
+def made_for_grooves(film: SolvedFilm) -> np.ndarray:
+    """Oil (n, m) that grooves receive from cavities which make it as their gap widens."""
+    return gather_made(OilFlows(film, 1.0).made, film.parts.grooves, film.journal.omega)
 
 
 def conductances_of(film: SolvedFilm) -> np.ndarray:

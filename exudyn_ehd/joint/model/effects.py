@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.arcs import LobeTerm, lobe_term, mixing_grooves
+from exudyn_ehd.film.arcs import LobeTerm, arc_edges, lobe_term, mixing_grooves
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.heat.options import LumpedThermal, known_supply
@@ -23,6 +23,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.models import film_grid, film_solver
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkLaw, ShearFactor, ShearProduct
 from exudyn_ehd.film.solvers.winkler import Liner
+from exudyn_ehd.film.supply.areas import Hole
 from exudyn_ehd.film.supply.cuts import SupplyMap
 from exudyn_ehd.film.supply.restrictors import Reservoirs
 from exudyn_ehd.film.surfaces.contact import ArchardWear, Contact, ElasticLiner, GapLimiter, WallContact
@@ -131,6 +132,12 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     )
     if supply is not None and any(area.supply is not None for area in bearing.supply):
         solver.reservoirs = _reservoirs(bearing, supply, effects)
+    grooves = arc_edges(grid)
+    if supply is not None and solver.complementary and grid.flows_along_z:
+        for area, mask, (share, _) in zip(bearing.supply, supply.masks, supply.rows, strict=True):
+            # oil passes a hole at its sides; oil into an area with a restrictor is that of the restrictor
+            if not isinstance(area, Hole) and area.supply is None and not area.rotating:
+                grooves = np.maximum(grooves, mask * share)
     liner = None if effects.liner is None else solver.elements
     contacts = None
     if touching:
@@ -146,6 +153,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         liner=liner,
         supply=supply,
         mixing=mixing,
+        grooves=grooves,
         contacts=contacts,
         limiter=LimiterFields(grid.shape) if effects.limiter is not None and liner is None else None,
         half_length=0.5 * bearing.length / R,

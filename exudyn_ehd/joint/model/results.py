@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from exudyn_ehd.film import loads
-from exudyn_ehd.joint.heat.power import OilFlows, powers
+from exudyn_ehd.joint.heat.power import OilFlows, made_for_grooves, powers
 from exudyn_ehd.joint.model.effects import Wear
 from exudyn_ehd.joint.solved_film import FilmParts, History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
@@ -141,6 +141,7 @@ def supply_flows(film: SolvedFilm) -> np.ndarray:
     """Return the inflow of every area of ``bearing.supply``, m3/s; empty without areas and arcs.
 
     With arcs, two values for each arc come first: the inflow at its leading and at its trailing edge, 0 for outflow.
+    Without the oil that a cavity of `SwiftStieber` makes in front of grooves and pockets.
     """
     p, flow_scale, edges = film.parts, film.parts.flow_scale, np.zeros(0)
     if p.grid.edges.size:
@@ -155,7 +156,7 @@ def supply_flows(film: SolvedFilm) -> np.ndarray:
     flows = p.supply.flows(p.solver.inflow(ended=not p.supply.rotating))
     if p.solver.reservoirs is not None:  # areas with a restrictor: the inflow of their balances
         flows = np.where(p.supply.fed, p.supply.flows(p.solver.inflow()), flows)
-    return np.append(edges, flows) * flow_scale
+    return np.append(edges, flows + p.supply.flows(made_for_grooves(film))) * flow_scale
 
 
 def pocket_pressures(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.heat.energy import end_flows_around, pass_on, transport_slopes
+from exudyn_ehd.film.heat.energy import end_flows_around, gather_made, pass_on, transport_slopes
 from exudyn_ehd.joint.balance.newton import settled_history
-from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, heat_of
+from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, heat_of, made_for_grooves
 from exudyn_ehd.joint.model.build import build_model, build_study_model
 from exudyn_ehd.joint.model.results import supply_flows
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
@@ -72,8 +72,14 @@ def settled(number, **options):
 
 
 def reported(model, evaluation):
-    """Loss with the power of the feeds, W, flow of the feeds and flow out, m3/s, by quantities that users see."""
-    q, areas, pc = evaluation.quantities(), supply_flows(evaluation.film), model.bearing.cavitation.cavity_pressure
+    """Loss with the power of the feeds, W, flow of the feeds and flow out, m3/s, by quantities that users see.
+
+    Oil that a cavity makes enters a groove against its pressure, like any oil that a film gives back.
+    """
+    q, film, pc = evaluation.quantities(), evaluation.film, model.bearing.cavitation.cavity_pressure
+    areas = supply_flows(film)
+    if areas.size:
+        areas = areas - film.parts.supply.flows(made_for_grooves(film)) * film.parts.flow_scale
     pc = pc if math.isfinite(pc) else 0.0
     pumped = sum((a.pressure - pc) * flow for a, flow in zip(model.bearing.supply, areas, strict=True))
     loss, out = q["power_loss"] + pumped + pc * q["leakage"], q["leakage"] - np.minimum(areas, 0.0).sum()
@@ -274,6 +280,16 @@ def test_a_cavity_on_an_arc_passes_on_what_it_receives(way):
     np.testing.assert_allclose(flow[:, 0], kept)
     np.testing.assert_allclose(passed[:, 0], less)
     np.testing.assert_allclose(found, 0.0)
+
+
+@pytest.mark.parametrize("way", (1, -1))
+def test_walls_gather_what_is_made_in_front_of_them(way):
+    """Two walls in the first row, one over a quarter of the second row, none in the third; oil at walls stays out."""
+    found = np.array([[1.0, 2.0, -4.0, 8.0, 16.0, 32.0], [1.0, 2.0, 4.0, 8.0, 16.0, 32.0], [1.0] * 6]).T.copy()
+    walls, expected = np.zeros((6, 3)), np.zeros((6, 3))
+    walls[[1, 4], 0], walls[3, 1] = 1.0, 0.25
+    expected[[1, 4], 0], expected[3, 1] = ((33.0, 4.0) if way > 0 else (4.0, 33.0)), 13.75
+    np.testing.assert_allclose(gather_made(found, walls, 300.0 * way), expected)
 
 
 @pytest.mark.parametrize(
