@@ -459,13 +459,6 @@ def rows_at_sides(grid: FilmGrid) -> np.ndarray:
     return np.asarray(grid.link_z * SIDE * float(grid.z[-1] - grid.z[0]) > 0.5)
 
 
-def arc_edges(grid: FilmGrid) -> np.ndarray:
-    """Field (n, m): 1 on the edges of arcs, else 0."""
-    edges = np.zeros(grid.shape)
-    edges[grid.edges.ravel()] = 1.0
-    return edges
-
-
 def mixing_grooves(grid: FilmGrid) -> list[np.ndarray]:
     """Return masks (n, m) of the vertices on both sides of every groove between arcs; an empty list for a ring."""
     grooves = []

@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.arcs import LobeTerm, arc_edges, lobe_term, mixing_grooves
+from exudyn_ehd.film.arcs import LobeTerm, lobe_term, mixing_grooves
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.heat.options import LumpedThermal, known_supply
@@ -132,7 +132,8 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     )
     if supply is not None and any(area.supply is not None for area in bearing.supply):
         solver.reservoirs = _reservoirs(bearing, supply, effects)
-    grooves = arc_edges(grid)
+    grooves = np.zeros(grid.shape)
+    grooves[grid.edges.ravel()] = 1.0
     if supply is not None and solver.complementary and grid.flows_along_z:
         for area, mask, (share, _) in zip(bearing.supply, supply.masks, supply.rows, strict=True):
             # oil passes a hole at its sides; oil into an area with a restrictor is that of the restrictor
