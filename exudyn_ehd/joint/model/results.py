@@ -156,7 +156,9 @@ def supply_flows(film: SolvedFilm) -> np.ndarray:
     flows = p.supply.flows(p.solver.inflow(ended=not p.supply.rotating))
     if p.solver.reservoirs is not None:  # areas with a restrictor: the inflow of their balances
         flows = np.where(p.supply.fed, p.supply.flows(p.solver.inflow()), flows)
-    return np.append(edges, flows + p.supply.flows(made_for_grooves(film))) * flow_scale
+    if p.grooves.any():
+        flows = flows + p.supply.flows(made_for_grooves(film))
+    return np.append(edges, flows) * flow_scale
 
 
 def pocket_pressures(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
