@@ -52,7 +52,7 @@ ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
 WEAKEST = 0.02
 # Changes of the temperature in K: the largest one in a round, of the same scaled size as a move by the clearance;
 # the root mean square below which Anderson's acceleration is used, whatever few vertices at the edge of a groove do.
-LARGEST_CHANGE, ACCELERATED = 50.0, 5.0
+LARGEST_CHANGE, ACCELERATED = 50.0, 2.0
 # Temperature in K above which a search fails. It is far above `HOTTEST`, because films during a search may be hotter
 # than the solution.
 DIVERGED = 2000.0
