@@ -170,8 +170,8 @@ class FilmParts:
     mixing : list of (n, m) bool arrays
         Vertices of the areas in which oil mixes: supply areas, or grooves between arcs.
     grooves : (n, m) array
-        1 on the edges of arcs; at vertices of grooves and pockets in the bore that have a given pressure the share of
-        the row's width that they cover; 0 elsewhere. They take in the oil that reaches them along theta.
+        1 on the edges of arcs. If the film is Swift and Stieber's: at vertices of grooves and pockets in the bore that
+        have a given pressure, the share of the row's width that they cover. 0 elsewhere.
     contacts, limiter : buffers or None
     half_length : float
         Half the bearing's length over the reference length.

@@ -322,9 +322,9 @@ def require_steady_load(system: SpinningSystem, weights: np.ndarray, free: np.nd
     known, u = system.q, system.spin()
     before = system.balance(known, u)[0]
     change = np.abs(weights * (free @ (free.T @ (system.balance(system.turned(), u)[0] - before))))
-    # without a load the round-off of positions of some metre remains
-    inertia = np.finfo(float).eps * float((np.diag(system.mass()) * weights**2).max())
-    if change.max() > ISOTROPIC * size + inertia * float(np.square(system.spins).max()):
+    # force of inertia at one metre from the axis, which positions of this size have as round-off
+    inertia = float((np.diag(system.mass()) * weights**2).max() * np.square(system.spins).max())
+    if change.max() > ISOTROPIC * size + np.finfo(float).eps * inertia:
         raise InputError(
             f"{WHERE}: the load of {named(system, int(np.argmax(change)))} turns with the rotor, by {change.max():.3g} "
             "N; put its centre of mass on its axis, and leave its unbalance to unbalance_response(...)."

@@ -199,7 +199,7 @@ class SwiftStieber(_Ruptures):
     feeds 0.75 to 1.1 times the flow of `ElrodAdams` (one of low pressure at a high eccentricity ratio 0.4 times). In
     front of other areas the oil is counted, so that their flow is too small or even negative. With `FilmEnergy` and
     `LumpedThermal` it cools the film, except on arcs: mean rises of grooved films are down to half of the true ones,
-    ``oil_flow`` is up to twice too large. Take `ElrodAdams` for temperatures of films with supply areas.
+    ``oil_flow`` is mostly 1.1 to 2 times too large. Take `ElrodAdams` for temperatures of films with supply areas.
 
     With the rupture line inside the cells of the grid the error of stiffness and damping is at most 1.5 % in any
     direction (default grid, eccentricity ratio up to 0.9, L/D 0.25 to 2). On vertices it is up to 13 %, in two thirds

@@ -51,7 +51,7 @@ ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
 # Damping factor of steps below which a search without progress gives up. Smaller: hopeless searches take longer.
 WEAKEST = 0.02
 # Changes of the temperature in K: the largest one in a round, of the same scaled size as a move by the clearance;
-# the root mean square below which Anderson's acceleration is used, whatever few vertices at the edge of a groove do.
+# their root mean square below which Anderson's acceleration is used, even if single vertices still change by more.
 LARGEST_CHANGE, ACCELERATED = 50.0, 2.0
 # Temperature in K above which a search fails. It is far above `HOTTEST`, because films during a search may be hotter
 # than the solution.
@@ -89,6 +89,10 @@ class Place:
     unbalance: np.ndarray
     slope: np.ndarray
     faces: ThrustEvaluation | None
+
+    def mean_change(self) -> float:
+        """Root mean square of ``change``, K."""
+        return float(norm(self.change)) / math.sqrt(max(self.change.size, 1))
 
 
 class Balance:
@@ -226,7 +230,7 @@ class Balance:
         best, smallest, idle, part, damping, highest = here, self.error(here), 0, 1.0, 1.0, 1e12 * resistance
         for _ in range(rounds):
             # so near to the end that Anderson's acceleration helps
-            if self.rough and self.residual(here) < 1.0 and mean_change(here) < ACCELERATED:
+            if self.rough and self.residual(here) < 1.0 and here.mean_change() < ACCELERATED:
                 self.rough = False
                 best = here = self.at(here.motion, here.temperature)
                 past, smallest = [], self.error(here)
@@ -240,7 +244,7 @@ class Balance:
             step = self._step(here, resistance)
             unknowns = np.append(here.motion[self.free], here.temperature) / self._scales(here.change.size)
             past = [*past, (unknowns, step)][-min(PATIENCE, step.size) - 1 :]
-            if not here.change.size or mean_change(here) >= ACCELERATED:
+            if not here.change.size or here.mean_change() >= ACCELERATED:
                 past = []
             accelerated = damping * step - (foreseen(past, damping) if len(past) > 1 else 0.0)
             try:
@@ -419,8 +423,3 @@ def evaluate_at(
     found = balance.at(motion, balance.cold)
     require_bearable(found.film, where)
     return found
-
-
-def mean_change(place: Place) -> float:
-    """Root mean square of a place's temperature changes, K."""
-    return float(norm(place.change)) / math.sqrt(max(place.change.size, 1))
