@@ -171,11 +171,11 @@ def end_flows_around(turned, pressed, stored, squeezed, full, flow_out, entering
 
 
 @njit(cache=True)
-def pass_on(x, couette, found, edges, spin):
-    """Make a film on arcs pass on along theta what it receives, not more, and at most the flow of a full film.
+def pass_on(x, couette, found, shares, walls, spin):
+    """Make cavities pass on along theta what they receive, not more, and at most the flow of a full film.
 
     A cavitation model that does not conserve mass keeps a cavity full while its gap widens along theta. The oil that it
-    makes there would be fresh and cold, and would enter the groove behind the arc in place of the feed.
+    makes there would be fresh and cold, and would enter the groove behind the cavity in place of the feed.
 
     Parameters
     ----------
@@ -183,52 +183,39 @@ def pass_on(x, couette, found, edges, spin):
         Flows over the links i -> i+1, changed in place, and those of a full film by sliding alone.
     found : (n, m) array
         Oil that the cavitation model makes, below 0 where it loses oil; changed in place.
-    edges : (k, 2) array
-        First and last column of every arc.
+    shares : (n, m) array
+        Share of the flow's reduction that a vertex passes on: 1 in cavities, less in the film that a cavity feeds.
+    walls : (n, m) array
+        Shares of the rows' width that are covered by the wall of a groove or by the edge of an arc, 0 elsewhere. Rows
+        without a wall stay as they are.
     spin : float
         Its sign is that of the sliding.
 
     Returns
     -------
-    (n, m) array
-        Oil that the edges at which arcs end receive less.
+    (2, n, m) array
+        Oil that the walls receive less, and all oil that is made between a wall and the one before.
     """
-    less, way = np.zeros_like(x), 1 if spin > 0.0 else -1
-    for first, last in edges[:, ::way]:
-        for i in range(first, last, way):
-            link, j = (i if way > 0 else i - 1), i + way
-            flow = way * x[link]
-            least, most = np.minimum(flow, 0.0), np.maximum(flow, way * couette[link])
-            cut = flow - np.minimum(np.maximum(flow - found[i], least), most)
-            x[link] -= way * cut
-            found[i] -= cut
-            (less if j == last else found)[j] += cut
-    return less
-
-
-@njit(cache=True)
-def gather_made(found, walls, spin):
-    """Oil (n, m) that a cavitation model makes between two walls, gathered at the wall to which the sliding takes it.
-
-    Parameters
-    ----------
-    found : (n, m) array
-        Oil that the model makes, below 0 where it loses oil.
-    walls : (n, m) array
-        Shares of the rows' width that the walls cover, 0 elsewhere. Rows without a wall stay out.
-    spin : float
-        Its sign is that of the sliding.
-    """
-    out, way, n = np.zeros_like(found), 1 if spin > 0.0 else -1, len(found)
-    for j in range(found.shape[1]):
-        first, made = walls[:, j].argmax(), 0.0
-        for k in range(1, n + 1 if walls[first, j] > 0.0 else 0):
+    less, way, n = np.zeros((2, *x.shape)), 1 if spin > 0.0 else -1, len(x)
+    for j in range(x.shape[1]):
+        first, cut, made = walls[:, j].argmax(), 0.0, 0.0
+        for k in range(n + 1 if walls[first, j] > 0.0 else 0):
             i = (first + way * k) % n
             if walls[i, j] > 0.0:
-                out[i, j], made = walls[i, j] * made, 0.0
+                less[0, i, j] += walls[i, j] * cut
+                less[1, i, j] += walls[i, j] * made
+                found[i, j] += (1.0 - walls[i, j]) * cut
+                cut = made = 0.0
             else:
                 made += found[i, j]
-    return out
+                found[i, j] += cut
+                link = i if way > 0 else i - 1
+                flow = way * x[link, j]
+                least, most = min(flow, 0.0), max(flow, way * couette[link, j])
+                cut = shares[i, j] * (flow - min(max(flow - found[i, j], least), most))
+                x[link, j] -= way * cut
+                found[i, j] -= cut
+    return less
 
 
 def content_rate(

@@ -16,7 +16,6 @@ from exudyn_ehd.film.heat.energy import (
     end_flows_around,
     film_flows,
     film_heat,
-    gather_made,
     outside_flows,
     pass_on,
 )
@@ -122,13 +121,12 @@ class OilFlows:
         Flow that enters with the supply temperature, and flow that leaves with the film's temperature; their difference
         is ``outside``. In areas that mix, only the sums over the area are meaningful: single values of ``leaving`` may
         be negative.
-    made : (n, m) array
-        Oil that a cavitation model makes which does not conserve mass, below 0 where it drops oil.
     found, lost : (n, m) arrays
         Where a cavitation model does not conserve mass: oil that it makes, and oil that it drops. Not the oil that it
-        makes on an arc as the gap of a cavity widens: `pass_on` subtracts it up to the edge at which the arc ends.
-    passed : (n, m) array
-        Oil that this edge receives less; it is contained in ``outside``.
+        makes as the gap of a cavity widens in front of a groove or of the edge of an arc: see `pass_on`.
+    passed, made : (n, m) arrays
+        Oil that this groove or edge receives less, contained in ``outside``; and all oil that a cavitation model makes
+        in front of it. The latter is larger where a loaded film forms again between cavity and groove.
     back : float
         Share of ``found`` that has the mixed temperature of ``lost``; the rest is fresh oil.
     areas : list of (n, m) bool arrays
@@ -170,10 +168,8 @@ class OilFlows:
         if not conserves and film.grid.flows_along_z and isinstance(film.parts.bearing.inlet, MaximumGap):
             self.lines = [(np.arange(len(fixed)) == 0)[:, None] & (np.abs(film.grid.z) < film.grid.z[-1])]
             self.outside[self.lines[0]] = 0.0
-        self.made = s.nothing if conserves else balance - self.outside
-        found = self.made.copy()
-        makes_oil = film.grid.edges.size and not conserves
-        self.passed = pass_on(self.x, fx, found, film.grid.edges, film.journal.omega) if makes_oil else s.nothing
+        found = s.nothing if conserves else balance - self.outside
+        self.passed, self.made = self._pass_on(film, fx, found)
         self.outside += self.passed
         self.found, self.lost = np.maximum(found, 0.0), np.maximum(-found, 0.0)
         self.total_found, self.total_lost = float(self.found.sum()), float(self.lost.sum())
@@ -194,6 +190,19 @@ class OilFlows:
     def largest(self) -> float:
         """Largest flow over a link."""
         return float(max(np.abs(self.x).max(), np.abs(self.z).max()))
+
+    def _pass_on(self, film: SolvedFilm, fx: np.ndarray, found: np.ndarray) -> np.ndarray:
+        """Return `pass_on` for the walls of grooves and the edges of arcs.
+
+        The film in front of a groove is full, up to the groove's pressure, and feeds on what the cavity passes on. A
+        film at higher pressures carries load: it finds the oil that it needs.
+        """
+        walls, P = film.parts.grooves, film.solver.pressure
+        if film.solver.closure.conserves_mass or not walls.any():
+            return np.zeros((2, *P.shape))
+        level = max(float(P[walls > 0.0].max()), 0.0)
+        shares = level / np.maximum(P, level) if level > 0.0 else 1.0 * (P <= 0.0)
+        return np.asarray(pass_on(self.x, fx, found, shares, walls, film.journal.omega))
 
     def _void_the_ends(self, film: SolvedFilm, stepped: bool) -> None:
         """Give the ends' control volumes the void of the neighbouring vertices."""
@@ -232,11 +241,6 @@ class OilFlows:
             out += np.roll(np.where(after & ~inside, np.maximum(flow, 0.0), 0.0), 1, axis)
             out += np.where(inside & ~after, np.maximum(-flow, 0.0), 0.0)
         return out
-
-
-def made_for_grooves(film: SolvedFilm) -> np.ndarray:
-    """Oil (n, m) that grooves receive from cavities which make it as their gap widens."""
-    return gather_made(OilFlows(film, 1.0).made, film.parts.grooves, film.journal.omega)
 
 
 def conductances_of(film: SolvedFilm) -> np.ndarray:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from exudyn_ehd.film import loads
-from exudyn_ehd.joint.heat.power import OilFlows, made_for_grooves, powers
+from exudyn_ehd.joint.heat.power import OilFlows, powers
 from exudyn_ehd.joint.model.effects import Wear
 from exudyn_ehd.joint.solved_film import FilmParts, History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
@@ -157,7 +157,7 @@ def supply_flows(film: SolvedFilm) -> np.ndarray:
     if p.solver.reservoirs is not None:  # areas with a restrictor: the inflow of their balances
         flows = np.where(p.supply.fed, p.supply.flows(p.solver.inflow()), flows)
     if p.grooves.any():
-        flows = flows + p.supply.flows(made_for_grooves(film))
+        flows = flows + p.supply.flows(OilFlows(film, 1.0).made)
     return np.append(edges, flows) * flow_scale
 
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.heat.energy import end_flows_around, gather_made, pass_on, transport_slopes
+from exudyn_ehd.film.heat.energy import end_flows_around, pass_on, transport_slopes
 from exudyn_ehd.joint.balance.newton import settled_history
-from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, heat_of, made_for_grooves
+from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, heat_of
 from exudyn_ehd.joint.model.build import build_model, build_study_model
 from exudyn_ehd.joint.model.results import supply_flows
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
@@ -74,16 +74,19 @@ def settled(number, **options):
 def reported(model, evaluation):
     """Loss with the power of the feeds, W, flow of the feeds and flow out, m3/s, by quantities that users see.
 
-    Oil that a cavity makes enters a groove against its pressure, like any oil that a film gives back.
+    Oil that a cavity makes enters a groove against its pressure, like any oil that a film gives back. Of this oil the
+    balance of heat leaves out what the film passes on to the groove, and the flow of the feed all.
     """
     q, film, pc = evaluation.quantities(), evaluation.film, model.bearing.cavitation.cavity_pressure
-    areas = supply_flows(film)
+    areas, supply, pc = supply_flows(film), film.parts.supply, pc if math.isfinite(pc) else 0.0
+    passed, made = (0.0 * areas,) * 2
     if areas.size:
-        areas = areas - film.parts.supply.flows(made_for_grooves(film)) * film.parts.flow_scale
-    pc = pc if math.isfinite(pc) else 0.0
-    pumped = sum((a.pressure - pc) * flow for a, flow in zip(model.bearing.supply, areas, strict=True))
-    loss, out = q["power_loss"] + pumped + pc * q["leakage"], q["leakage"] - np.minimum(areas, 0.0).sum()
-    return loss, np.maximum(areas, 0.0).sum(), out
+        oil = OilFlows(film, 1.0)
+        passed, made = (supply.flows(field) * film.parts.flow_scale for field in (oil.passed, oil.made))
+    pumped = sum((a.pressure - pc) * flow for a, flow in zip(model.bearing.supply, areas - made, strict=True))
+    feeds = areas - made + passed
+    loss, out = q["power_loss"] + pumped + pc * q["leakage"], q["leakage"] - np.minimum(feeds, 0.0).sum()
+    return loss, np.maximum(feeds, 0.0).sum(), out
 
 
 def check(number, tolerance, **options):
@@ -267,29 +270,30 @@ def test_flows_along_an_end_close(seed):
 
 
 @pytest.mark.parametrize("way", (1, -1))
-def test_a_cavity_on_an_arc_passes_on_what_it_receives(way):
-    """A gap that widens keeps the oil of its rupture, flows against the sliding stay, and the edge receives less."""
-    couette = np.array([3.0, 2.0, 3.0, 5.0, 6.0, 0.0])[:, None]
-    flow = np.array([-1.0, 2.0, 3.0, 5.0, 6.0, 0.0])[:, None]
-    found = np.array([0.0, 0.0, 1.0, 2.0, 1.0, 0.0])[:, None]
-    kept, less = np.array([-1.0, 2.0, 2.0, 2.0, 2.0, 0.0]), np.array([0.0, 0.0, 0.0, 0.0, 0.0, 4.0])
+def test_a_cavity_passes_on_what_it_receives(way):
+    """A gap that widens keeps the oil of its rupture, flows against the sliding stay, and the wall receives less.
+
+    Walls are the edges of an arc in the first row, a quarter of the second row, and nothing in the third.
+    """
+    couette = np.array([3.0, 2.0, 3.0, 5.0, 6.0, 0.0])
+    flow = np.array([-1.0, 2.0, 3.0, 5.0, 6.0, 0.0])
+    found = np.array([0.0, 0.0, 1.0, 2.0, 1.0, 0.0])
+    kept, last = np.array([-1.0, 2.0, 2.0, 2.0, 2.0, 0.0]), 5
     if way < 0:  # links i -> i+1 from the other end
-        couette, flow = -np.roll(couette[::-1], -1, axis=0), -np.roll(flow[::-1], -1, axis=0)
-        found, kept, less = found[::-1].copy(), -np.roll(kept[::-1], -1), less[::-1]
-    passed = pass_on(flow, couette, found, np.array([[0, 5]]), 300.0 * way)
-    np.testing.assert_allclose(flow[:, 0], kept)
-    np.testing.assert_allclose(passed[:, 0], less)
-    np.testing.assert_allclose(found, 0.0)
-
-
-@pytest.mark.parametrize("way", (1, -1))
-def test_walls_gather_what_is_made_in_front_of_them(way):
-    """Two walls in the first row, one over a quarter of the second row, none in the third; oil at walls stays out."""
-    found = np.array([[1.0, 2.0, -4.0, 8.0, 16.0, 32.0], [1.0, 2.0, 4.0, 8.0, 16.0, 32.0], [1.0] * 6]).T.copy()
-    walls, expected = np.zeros((6, 3)), np.zeros((6, 3))
-    walls[[1, 4], 0], walls[3, 1] = 1.0, 0.25
-    expected[[1, 4], 0], expected[3, 1] = ((33.0, 4.0) if way > 0 else (4.0, 33.0)), 13.75
-    np.testing.assert_allclose(gather_made(found, walls, 300.0 * way), expected)
+        couette, flow, kept = (-np.roll(f[::-1], -1) for f in (couette, flow, kept))
+        found, last = found[::-1].copy(), 0
+    walls = np.zeros((6, 3))
+    walls[[0, 5], 0], walls[last, 1] = 1.0, 0.25
+    flows, left = np.tile(flow[:, None], 3), np.tile(found[:, None], 3)
+    sliding, expected = np.tile(couette[:, None], 3), np.zeros((6, 3))
+    passed, made = pass_on(flows, sliding, left, np.ones((6, 3)), walls, 300.0 * way)
+    np.testing.assert_allclose(flows, np.transpose([kept, kept, flow]))
+    expected[last, :2] = 4.0, 1.0
+    np.testing.assert_allclose(passed, expected)
+    np.testing.assert_allclose(made, expected)
+    expected[last, :2] = 0.0, 3.0
+    expected[:, 2] = found
+    np.testing.assert_allclose(left, expected)
 
 
 @pytest.mark.parametrize(

@@ -433,3 +433,52 @@ def test_what_is_around_is_the_coldest(seed):
         np.testing.assert_allclose(
             thermal.across(thermal.extrapolated(slow, 1.0))[0][away], line[away], rtol=0, atol=1e-8
         )
+
+
+@pytest.mark.slow
+def test_grooved_films_of_swift_and_stieber_against_films_that_conserve_mass():
+    """A groove or a pocket within 30 degrees of the largest gap: nine of ten bearings are in the stated ranges."""
+    rng, ratios = np.random.default_rng(5), []
+    for k in range(20):
+        radius, slender, way = 10 ** rng.uniform(-1.9, -1.0), rng.uniform(0.4, 1.2), rng.choice([-1.0, 1.0])
+        length, clearance, supply = (
+            2.0 * radius * slender,
+            radius * rng.uniform(0.8e-3, 2e-3),
+            rng.uniform(308.0, 333.0),
+        )
+        area = (ehd.AxialGroove, ehd.Pocket)[k % 2](
+            angle=math.pi + rng.uniform(-1.0, 1.0) * math.pi / 6.0,
+            width_angle=math.radians(rng.uniform(10.0, 30.0) + 20.0 * (k % 2)),
+            length=rng.uniform(0.6, 0.9) * length,
+            pressure=10 ** rng.uniform(4.3, 5.5),
+        )
+        oil = ehd.oil(("ISO VG 32", "ISO VG 46", "ISO VG 68")[k % 3])
+        place = {"speed": way * rng.uniform(2.0, 20.0) / radius, "eccentricity_ratio": rng.uniform(0.3, 0.85)}
+        found = []
+        for closure in (ehd.SwiftStieber(), ehd.ElrodAdams()):
+            films = [
+                ehd.steady(
+                    ehd.JournalBearing(
+                        journal_radius=radius,
+                        length=length,
+                        radial_clearance=clearance,
+                        lubricant=oil,
+                        supply=(area,),
+                        cavitation=closure,
+                        thermal=thermal,
+                    ),
+                    **place,
+                )
+                for thermal in (ehd.FilmEnergy(supply_temperature=supply), ehd.LumpedThermal(supply_temperature=supply))
+            ]
+            field, mean = (np.asarray(film.temperature) - supply for film in films)
+            film = films[0]
+            rises = field.mean(), field.max(), float(mean)
+            found.append([*rises, film.power_loss, film.oil_flow, film.supply_flows[0]])
+        ratios.append(np.divide(*found))
+    low, high = np.quantile(ratios, (0.1, 0.9), axis=0)
+    stated = ((0.7, 1.0), (1.0, 1.2), (0.9, 1.1), (1.0, 1.3), (1.05, 1.5), (0.7, 1.1))
+    for name, least, most, (lower, upper) in zip(
+        ("mean rise", "largest rise", "one temperature", "loss", "oil", "supply"), low, high, stated, strict=True
+    ):
+        assert lower < least < most < upper, (name, least, most)
