@@ -350,7 +350,7 @@ def film_solver(
         closure,
         squeeze=squeeze,
         flux_effects=flux_effects,
-        circumferential_pressure_flow=film.circumferential_pressure_flow,
+        circumferential_pressure_flow=getattr(film, "circumferential_pressure_flow", True),
         density=density,
         liner=liner,
     )

@@ -256,6 +256,15 @@ class BoreState(NamedTuple):
     load: np.ndarray
 
 
+class GapState(NamedTuple):
+    """Smallest gap, scaled, m over the clearance; and of `SolvedFilm`: gap terms, contacts and limiter that act."""
+
+    smallest: float
+    extra: ExtraGap | None
+    pressing: ContactFields | None
+    limited: LimiterFields | None
+
+
 class Loads(NamedTuple):
     """Loads of a film on the journal.
 
@@ -338,6 +347,11 @@ class SolvedFilm(NamedTuple):
     serial: int
     walls: Walls | None = None
     beside: FacesHeat | None = None
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Pressure (n, m), Pa."""
+        return self.oil.P * self.scales.pressure
 
     def require_current(self) -> None:
         """Raise RuntimeError if the buffers contain the film of a later evaluation."""

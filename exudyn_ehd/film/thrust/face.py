@@ -36,7 +36,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import Closure
-from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.heat.energy import ViscosityField
 from exudyn_ehd.film.loads import end_flows
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
@@ -355,17 +354,11 @@ class FaceFilm:
 
         The last three also follow the gradients of the pressure, by ``drag`` times the viscosity's slopes.
         """
-        s, w, y = self.solver, self.solver.work, self.solver.system
-        unknown = w.order[: w.count]
-        rows = fields.reshape(len(fields), -1)[:, unknown]
-        rows *= w.active.reshape(-1)[unknown]
-        if y.continued is not None:
-            rows_of_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
+        by_gradient = None
         if drag is not None and self.fields.ratio_g is not None and isinstance(self.sliding, ShearThinning):
-            by_gradient = [self.sliding.gather(self.fields.ratio_g * own) for own in drag]
-            rows[6:] += np.reshape(by_gradient, (3, -1))[:, unknown]
-        s.solve_transposed(rows)
-        return rows
+            by_gradient = np.zeros_like(fields)
+            by_gradient[6:] = [self.sliding.gather(self.fields.ratio_g * own) for own in drag]
+        return self.solver.adjoint(fields * self.solver.work.active, by_gradient)
 
     def _by_motion(self, cell: np.ndarray, face: np.ndarray, rate: np.ndarray, speed: np.ndarray) -> np.ndarray:
         """Gradients (k, 9) to the motion, SI units, from those of `Gradients.fields`."""

@@ -15,9 +15,8 @@ from exudyn_ehd.film.surfaces import roughness
 from exudyn_ehd.film.surfaces.contact import add_contact
 from exudyn_ehd.joint.heat.temperature import OilTemperature
 from exudyn_ehd.joint.solved_film import (
-    ContactFields,
-    ExtraGap,
     FilmParts,
+    GapState,
     JournalMotion,
     LimiterFields,
     Loads,
@@ -30,13 +29,11 @@ def film_loads(
     scales: Scales,
     journal: JournalMotion,
     oil: OilFields,
-    extra: ExtraGap | None,
-    pressing: ContactFields | None,
-    limited: LimiterFields | None,
+    gap: GapState,
     recess: RecessShear | None = None,
 ) -> Loads:
     """Loads of the film whose solution is in the buffers of ``parts.solver``."""
-    s, g, P = parts.solver, parts.grid, oil.P
+    s, g, P, (_, extra, pressing, limited) = parts.solver, parts.grid, oil.P, gap
     integrals = np.empty(4)
     pressure_integrals(P, g.weight, g.gap_shapes, integrals)
     extra_theta = extra_z = 0.0

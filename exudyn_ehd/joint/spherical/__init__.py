@@ -3,7 +3,7 @@
 Module map
 ----------
 bearing  `SphericalBearing`, the description of a ball joint; film grid of a patch of a sphere
-film     one film: gaps, solution, loads on the ball, heat
-model    evaluations, memory of a film, exact tangent
+film     one film: gap, loads on the ball, heat
+model    evaluations, steady film, exact tangent
 steady   film at a prescribed position; audit of a ball joint
 """

@@ -91,7 +91,7 @@ def test_mass_balances_to_round_off_in_a_motion(angles):
     for k in range(1, 60):
         found = film.evaluate(path(k * step), history, step)
         brought += step * film.solver.inflow().sum()
-        history, least = found.history(), min(least, found.film.fill.min())
+        history, least = found.history(), min(least, film.solver.fill.min())
         held, whole = (area * (history.mass - first)).sum(), (area * history.mass).sum()
         assert abs(held - brought) < 1e-9 * whole
     assert least < 0.95
