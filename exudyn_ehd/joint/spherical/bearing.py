@@ -256,7 +256,7 @@ class SphericalBearing(Checked):
     The socket is the part of a sphere between two circles around the joint's z axis, fixed in the housing. Colatitudes
     count from +z: (0, pi/2) is a hemispherical cup on the side of +z, which carries a ball that is pushed along +z. A
     socket that ends beyond pi/2 also holds the ball along -z. The edges are open to the ambient pressure. Equations and
-    assumptions: `exudyn_ehd.joint.spherical.film`.
+    assumptions: `exudyn_ehd.joint.spherical.model`.
 
     Errors of the default grid. Squeeze force of the cup, against the closed form: 0.02 % up to eccentricity ratio 0.5,
     0.4 % at 0.9. Any motion in any direction, in sockets closed or open at the pole: force up to 1 % at eccentricity

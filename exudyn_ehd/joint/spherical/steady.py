@@ -37,8 +37,16 @@ from exudyn_ehd.joint.balance.limits import (
 )
 from exudyn_ehd.joint.solved_film import LARGEST_SPREAD
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY, loads_of
-from exudyn_ehd.joint.spherical.model import SphericalEvaluation, SphericalModel, steady_film
+from exudyn_ehd.joint.spherical.model import (
+    PLACE,
+    SIZE,
+    SPIN,
+    VELOCITY,
+    SphericalEvaluation,
+    SphericalModel,
+    loads_of,
+    steady_film,
+)
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.pictures.records import Figure, PolarAxes, Target, shown
 from exudyn_ehd.status import FilmError, Status, require_type, require_vector
@@ -227,7 +235,7 @@ class SphericalResult:
         Power loss, W; force of the contact, N, a part of ``force``.
     bearing : SphericalBearing
     motion : (11,) array
-        Place, velocity and angular velocity, as in `exudyn_ehd.joint.spherical.film`.
+        Place, velocity and angular velocity, as in `exudyn_ehd.joint.spherical.model`.
 
     Examples
     --------

@@ -10,8 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.spherical.film import PLACE, SPIN, VELOCITY
-from exudyn_ehd.joint.spherical.model import SphericalModel
+from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
 from tests.joint.spherical.test_model import BARUS, CUP, MU, RING, WALL, C, R, motion, numerical, states
 from tests.joint.spherical.test_oil_content import VAPOUR, path
 

@@ -7,8 +7,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.spherical.film import SPIN, VELOCITY
-from exudyn_ehd.joint.spherical.model import SphericalModel
+from exudyn_ehd.joint.spherical.model import SPIN, VELOCITY, SphericalModel
 from tests.joint.spherical.test_model import BARUS, CUP, RING, WALL, C, R, motion, states
 
 SUPPLY = 313.15

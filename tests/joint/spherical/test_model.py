@@ -9,8 +9,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import spsolve
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY
-from exudyn_ehd.joint.spherical.model import SphericalModel
+from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.spherical.steady import result_of
 from exudyn_ehd.status import Status
 

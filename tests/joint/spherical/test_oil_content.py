@@ -10,7 +10,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.spherical.bearing import SphereFlow, sphere_patch
-from exudyn_ehd.joint.spherical.film import PLACE, SPIN, VELOCITY
+from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY
 from exudyn_ehd.status import Status
 from tests.joint.spherical.test_model import BARUS, CUP, RING, WALL, C, R, model, motion, numerical, states
 
