@@ -26,6 +26,7 @@ from scipy.sparse import csr_matrix, diags
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.options import Walls
+from exudyn_ehd.film.loads import Scales
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
@@ -201,24 +202,6 @@ class FilmParts:
     flow_scale: float
     uneven_drag: bool
     evaluations: int = 0
-
-
-class Scales(NamedTuple):
-    """SI units of scaled quantities at the viscosity of one temperature, and the known pressures in them.
-
-    pressure, force, shear : Pa, N, and N s/m of Couette shear
-    ends : (2,) array, pressures at both ends
-    cavity : cavity pressure
-    edges : (2 k,) array; for every arc minus the pressure at its leading edge, then the pressure at its trailing edge;
-        None if all are 0
-    """
-
-    pressure: float
-    force: float
-    shear: float
-    ends: np.ndarray
-    cavity: float
-    edges: np.ndarray | None = None
 
 
 class JournalMotion(NamedTuple):

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from exudyn_ehd.film.loads import couette_integral, journal_wrench, pressure_integrals
+from exudyn_ehd.film.loads import Scales, couette_integral, journal_wrench, pressure_integrals
 from exudyn_ehd.film.reynolds.gap import on_links
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
@@ -20,7 +20,6 @@ from exudyn_ehd.joint.solved_film import (
     JournalMotion,
     LimiterFields,
     Loads,
-    Scales,
 )
 
 

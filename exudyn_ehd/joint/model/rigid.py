@@ -32,6 +32,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.options import Walls
+from exudyn_ehd.film.loads import film_scales
 from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.joint.model.effects import Effects, film_parts, grid_of
@@ -48,7 +49,6 @@ from exudyn_ehd.joint.solved_film import (
     History,
     JournalMotion,
     Loads,
-    Scales,
     SolvedFilm,
 )
 from exudyn_ehd.joint.tangent.wrench import wrench_tangent
@@ -223,13 +223,11 @@ class BearingModel:
     def _set_viscosity(self, ratio: float) -> None:
         """Set the scales for ``ratio`` times the reference viscosity."""
         b, p, law = self.bearing, self.parts, self.effects.pressure_law
-        mu, R, c = ratio * b.lubricant.viscosity, b.journal_radius, b.radial_clearance
-        pressure = 12.0 * mu * R**2 / c**2
-        self.viscosity_ratio, known = ratio, self._known / pressure
-        edges = known[3:] * np.tile((-1.0, 1.0), len(p.grid.edges)) if known[3:].any() else None
-        self.scales = Scales(pressure, pressure * R**2, mu * R**2 / c, known[:2], float(known[2]), edges)
+        R, c, self.viscosity_ratio = b.journal_radius, b.radial_clearance, ratio
+        self.scales = film_scales(ratio * b.lubricant.viscosity, R, c, self._known)
+        pressure = self.scales.pressure
         # prescribed pressures for the solver, transformed by a pressure law
-        self._prescribed = known if law is None else law.transform(self._known) / pressure
+        self._prescribed = (self._known if law is None else law.transform(self._known)) / pressure
         if p.liner is not None and self.effects.liner is not None:
             p.liner.beta = self.effects.liner.compliance * pressure / c
         p.solver.pressure_scale = pressure
