@@ -207,7 +207,8 @@ class FilmParts:
 class JournalMotion(NamedTuple):
     """Motion (10,) in SI units, followed by the coordinates and rates of a flexible bore.
 
-    Also the scaled pose (4,) and rates (4,), the spin, rad/s, and the axial speed, m/s.
+    Also the scaled pose (4,) and rates (4,), the spin, rad/s, and the axial speed, m/s. The motion of a ball is that of
+    `exudyn_ehd.joint.spherical.model`, with the scaled place (3,) and velocity (3,).
     """
 
     motion: np.ndarray
@@ -240,7 +241,7 @@ class BoreState(NamedTuple):
 
 
 class GapState(NamedTuple):
-    """Smallest gap, scaled, m over the clearance; and of `SolvedFilm`: gap terms, contacts and limiter that act."""
+    """Gaps of a motion: the smallest one, scaled; gap terms, contacts and limiter as in `SolvedFilm`."""
 
     smallest: float
     extra: ExtraGap | None
