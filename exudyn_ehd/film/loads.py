@@ -21,11 +21,38 @@ lie between its vertices.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from exudyn_ehd.compilation import FAST
+
+
+class Scales(NamedTuple):
+    """SI units of scaled quantities at the viscosity of one temperature, and the known pressures in them.
+
+    pressure, force, shear : Pa, N, and N s/m of Couette shear
+    ends : (2,) array, pressures at both ends
+    cavity : cavity pressure
+    edges : (2 k,) array; for every arc minus the pressure at its leading edge, then the pressure at its trailing edge;
+        None if all are 0
+    """
+
+    pressure: float
+    force: float
+    shear: float
+    ends: np.ndarray
+    cavity: float
+    edges: np.ndarray | None = None
+
+
+def film_scales(viscosity: float, radius: float, clearance: float, known: np.ndarray) -> Scales:
+    """Scales of a film of a viscosity, Pa s; ``known``: pressures of ends, cavity and edges of arcs, Pa."""
+    pressure = 12.0 * viscosity * radius**2 / clearance**2
+    ends, cavity, edges = known[:2] / pressure, float(known[2] / pressure), known[3:] / pressure
+    signed = edges * np.tile((-1.0, 1.0), edges.size // 2) if edges.any() else None
+    return Scales(pressure, pressure * radius**2, viscosity * radius**2 / clearance, ends, cavity, signed)
 
 
 @njit(cache=True, fastmath=FAST)

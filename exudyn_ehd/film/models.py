@@ -333,7 +333,7 @@ def film_grid(
 
 
 def film_solver(
-    film: FilmOption,
+    film: FilmOption | None,
     grid: FilmGrid,
     closure: Closure,
     *,
@@ -342,7 +342,10 @@ def film_solver(
     density: CompressibleLaw | None = None,
     liner: Liner | None = None,
 ) -> FilmSolver:
-    """Solver of a film model on its grid; ``density`` and ``liner`` as for `FilmSolver`."""
+    """Solver of a film model on its grid; ``density`` and ``liner`` as for `FilmSolver`.
+
+    A ball has no film model: its ``film`` is None.
+    """
     if isinstance(film, ClassicSOR):
         return ClassicSolver(film, grid, closure, squeeze=squeeze)
     return FilmSolver(
@@ -350,7 +353,7 @@ def film_solver(
         closure,
         squeeze=squeeze,
         flux_effects=flux_effects,
-        circumferential_pressure_flow=film.circumferential_pressure_flow,
+        circumferential_pressure_flow=getattr(film, "circumferential_pressure_flow", True),
         density=density,
         liner=liner,
     )

@@ -26,6 +26,7 @@ from scipy.sparse import csr_matrix, diags
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.options import Walls
+from exudyn_ehd.film.loads import Scales
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
@@ -203,28 +204,11 @@ class FilmParts:
     evaluations: int = 0
 
 
-class Scales(NamedTuple):
-    """SI units of scaled quantities at the viscosity of one temperature, and the known pressures in them.
-
-    pressure, force, shear : Pa, N, and N s/m of Couette shear
-    ends : (2,) array, pressures at both ends
-    cavity : cavity pressure
-    edges : (2 k,) array; for every arc minus the pressure at its leading edge, then the pressure at its trailing edge;
-        None if all are 0
-    """
-
-    pressure: float
-    force: float
-    shear: float
-    ends: np.ndarray
-    cavity: float
-    edges: np.ndarray | None = None
-
-
 class JournalMotion(NamedTuple):
     """Motion (10,) in SI units, followed by the coordinates and rates of a flexible bore.
 
-    Also the scaled pose (4,) and rates (4,), the spin, rad/s, and the axial speed, m/s.
+    Also the scaled pose (4,) and rates (4,), the spin, rad/s, and the axial speed, m/s. The motion of a ball is that of
+    `exudyn_ehd.joint.spherical.model`, with the scaled place (3,) and velocity (3,).
     """
 
     motion: np.ndarray
@@ -254,6 +238,15 @@ class BoreState(NamedTuple):
     rates: np.ndarray
     displacement: np.ndarray
     load: np.ndarray
+
+
+class GapState(NamedTuple):
+    """Gaps of a motion: the smallest one, scaled; gap terms, contacts and limiter as in `SolvedFilm`."""
+
+    smallest: float
+    extra: ExtraGap | None
+    pressing: ContactFields | None
+    limited: LimiterFields | None
 
 
 class Loads(NamedTuple):
@@ -338,6 +331,11 @@ class SolvedFilm(NamedTuple):
     serial: int
     walls: Walls | None = None
     beside: FacesHeat | None = None
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Pressure (n, m), Pa."""
+        return self.oil.P * self.scales.pressure
 
     def require_current(self) -> None:
         """Raise RuntimeError if the buffers contain the film of a later evaluation."""

@@ -185,7 +185,7 @@ class ThrustModel:
         motion, key = face.motion, (face.side, float(face.motion[0]), float(face.motion[6]), face.ratio)
         if key not in self._changes:
             still, spin = motion * np.eye(FACE_SIZE)[[0, 6]].sum(axis=0), abs(key[2]) or 1.0
-            lengths = face.scales.c / np.array([1.0, face.scales.R, face.scales.R])
+            lengths = 1.0 / face.by_place
             steps = BESIDE * np.array([0.0, *lengths[1:], *(spin * lengths), spin, 0.0, 0.0])
             sides = quotients(lambda there: face.evaluate(there, key[3]).wrench, still, steps)
             face.evaluate(still, key[3])

@@ -83,7 +83,7 @@ class StepStart:
     time : float
         s.
     motion : (10 + 2 k,) array
-        Pose, velocities and bore; (11,) for a ball, see `exudyn_ehd.joint.spherical.film`.
+        Pose, velocities and bore; (11,) for a ball, see `exudyn_ehd.joint.spherical.model`.
     step : float
         Length of the step before, s; 0 if there was none.
     misses : (n, 4 + k) array

@@ -12,6 +12,7 @@ from exudyn_ehd.film.reynolds.links import set_links
 from exudyn_ehd.film.solvers.sets import solve_sets
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.loads import film_loads
+from exudyn_ehd.joint.solved_film import GapState
 from tests.benchmarks.accuracy import order
 from tests.benchmarks.accuracy.costs import growth
 from tests.benchmarks.accuracy.scenes import measured
@@ -52,7 +53,7 @@ def _stage_runs(grid):
         "solve": lambda: solve_sets(y, s.work),
         "evaluation": lambda: whole.evaluate(states[0]),
         "tangent": evaluation.tangent,
-        "loads": lambda: film_loads(film.parts, film.scales, w, film.oil, None, None, None),
+        "loads": lambda: film_loads(film.parts, film.scales, w, film.oil, GapState(1.0, None, None, None)),
     }
 
 

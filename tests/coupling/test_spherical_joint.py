@@ -131,7 +131,7 @@ def test_forces_and_moments_of_ball_and_socket_cancel():
     q = np.concatenate([1e-5 * rng.normal(size=3), 1e-5 * rng.normal(size=4)])
     element.force(mbs, 0.0, 0, q.tolist(), rng.normal(size=7).tolist())
     socket, ball = (side.frame for side in element.sides)
-    loads, film = np.empty((4, 3)), element.last.evaluation.film
+    loads, film = np.empty((4, 3)), element.last.evaluation.film.loads
     relative.global_loads(socket, ball, element.last.evaluation.wrench, loads)
     # of the film on the ball, with its moment about the ball's centre
     assert loads[2] == pytest.approx(socket[:, :3] @ film.wrench[:3])

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY
-from exudyn_ehd.joint.spherical.model import SphericalModel
+from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.thrust import ThrustModel
 
 CLOSURES = (ehd.SwiftStieber(), ehd.SwiftStieber(line_in_cells=False), ehd.Gumbel(), ehd.FullSommerfeld())

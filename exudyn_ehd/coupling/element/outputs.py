@@ -75,7 +75,7 @@ class FilmDisplay:
             return
         model: Any = self.element.model
         clearance = model.bearing.radial_clearance
-        self.pressure = film.oil.P * film.scales.pressure
+        self.pressure = film.pressure
         self.gap = film.solver.H * clearance
         if film.bore is None:
             return

@@ -301,7 +301,7 @@ def _check_memory(joint: Joint, state: JointState) -> None:
     """Raise `InputError` for a memory or a start of a step that does not fit this film."""
     model, memory, begin = joint.element.model, state.memory, state.begin
     bore = model.size if isinstance(model, ElasticBearingModel) else 0
-    size = getattr(model, "motion_size", MOTION_SIZE + 2 * bore)
+    size = getattr(model, "motion_size", MOTION_SIZE) + 2 * bore
     known = 0 if begin is None else min(len(np.atleast_1d(begin.misses)), len(WEIGHTS) - 1)
     start = StepStart(time=0.0, motion=np.zeros(size), step=0.0, misses=np.zeros((known, 4 + bore)), clearance=0.0)
     film = model.initial_history(np.zeros(size))

@@ -23,6 +23,7 @@ from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner
 from exudyn_ehd.joint.balance.newton import settled_history
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
+from exudyn_ehd.joint.spherical.model import SphericalModel
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.thrust import ThrustModel, seen_by_faces
 from exudyn_ehd.joint.time_step import StepStart
@@ -269,7 +270,7 @@ def settle(mbs: exu.MainSystem, element: FilmElement, heated: bool = True) -> No
     ``heated``: the film has the temperature in balance with its heat, else its initial one.
     """
     model, memory = element.model, None
-    if not isinstance(model, BearingModel):
+    if not isinstance(model, BearingModel) or isinstance(model, SphericalModel):
         return
     if model.remembers:
         motion = element.motion(mbs, INITIAL)

@@ -13,6 +13,7 @@ import numpy as np
 
 from exudyn_ehd.compilation import TOLERANCE
 from exudyn_ehd.film.cavitation.closures import Closure, status_of
+from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
@@ -138,6 +139,22 @@ class FilmSolver(FilmAnswers):
             self.lag(None, step)
             status, count = self.solve(vx, vz, cavity_pressure, kept, step)
         return status, count
+
+    def adjoint(self, weights: np.ndarray, by_gradient: np.ndarray | None = None) -> np.ndarray:
+        """Return the adjoints (k, count) of sums over the unknowns with ``weights`` (k, n, m).
+
+        ``by_gradient`` (k, n, m): weights of the unknown itself at vertices whose pressure is not continued beyond a
+        rupture line.
+        """
+        s, w, k = self.system, self.work, len(weights)
+        at = w.order[: w.count]
+        rows = np.ascontiguousarray(weights.reshape(k, -1)[:, at])
+        if s.continued is not None:
+            rows_of_linear(s.continued, s.fixed, s.linked, s.cavity_pressure, w.active, w.number, rows)
+        if by_gradient is not None:
+            rows += by_gradient.reshape(k, -1)[:, at]
+        self.solve_transposed(rows)
+        return rows
 
     def _balance(self, r: Reservoirs, solve: Callable[[], tuple[Status, int]], floor: float) -> tuple[Status, int]:
         """Solve the film and the pressures of its reservoirs by Newton's method; no pressure is below ``floor``, Pa.

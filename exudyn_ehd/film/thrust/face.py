@@ -36,9 +36,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import Closure
-from exudyn_ehd.film.cavitation.linear_film import rows_of_linear
 from exudyn_ehd.film.heat.energy import ViscosityField
-from exudyn_ehd.film.loads import end_flows
+from exudyn_ehd.film.loads import end_flows, film_scales
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant, transform_of
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
@@ -53,16 +52,6 @@ from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
 from exudyn_ehd.status import Status
 
 FACE_SIZE = 9
-
-
-class FaceScales:
-    """SI units of the scaled integrals: of pressure, N, and shear, N s / m, times lengths R; clearance and R in m."""
-
-    def __init__(self, viscosity: float, clearance: float, radius: float) -> None:
-        self.c, self.R = clearance, radius
-        self.pressure = 12.0 * viscosity * radius**2 / clearance**2
-        self.force = self.pressure * radius**2
-        self.shear = viscosity * radius**2 / clearance
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +100,10 @@ class FaceFilm:
         The same as the solver's scaled unknowns.
     fields : OilFields
         Of the last solution.
+    c, R : float
+        Clearance and the radius of `Annulus`, m.
+    by_place : (3,) array
+        Factors from the place (zeta, bx, by) to the scaled one.
     """
 
     def __init__(
@@ -147,7 +140,9 @@ class FaceFilm:
         effects = AnnularFlow(a.square, a.sides, self.steps), *(() if self.sliding is None else (self.sliding,))
         density = self.law if isinstance(self.law, CompressibleLaw) else None
         self.solver = FilmSolver(grid, closure, flux_effects=effects, density=density)
-        self._scale(c, 1.0)
+        self.c, self.R, self.flow_scale = c, a.scale, c * a.scale**2
+        self.by_place = np.array([1.0, a.scale, a.scale]) / c
+        self._scale(1.0)
         around = (link - np.roll(link, 1, axis=0)) / grid.width_x[:, None] / a.r
         # u . grad d / 2 for the shifts along x and y
         self.shifted = 0.5 * np.array([-around * np.sin(grid.x)[:, None], around * np.cos(grid.x)[:, None]])
@@ -155,10 +150,10 @@ class FaceFilm:
         sign = side * np.array([1.0, -1.0, -1.0])[:, None, None]
         self.shape, self.link_shape = sign * a.moments, sign * a.link_moments[:3]
 
-    def _scale(self, clearance: float, ratio: float) -> None:
+    def _scale(self, ratio: float) -> None:
         """Scale the film to ``ratio`` times the oil's viscosity."""
         a, self.ratio = self.annulus, ratio
-        self.scales = FaceScales(ratio * self.oil.viscosity, clearance, a.scale)
+        self.scales = film_scales(ratio * self.oil.viscosity, self.R, self.c, self.pressures)
         self.solver.pressure_scale = self.scales.pressure
         known = self.pressures if self.law is None else self.law.transform(self.pressures)
         self.known = known / self.scales.pressure
@@ -168,9 +163,9 @@ class FaceFilm:
     def evaluate(self, motion: np.ndarray, ratio: float = 1.0) -> FaceState:
         """The film at a motion (9,), SI units, with ``ratio`` times the oil's viscosity."""
         if ratio != self.ratio:
-            self._scale(self.scales.c, ratio)
+            self._scale(ratio)
         s, k = self.solver, self.scales
-        smallest = k.c * self._set_gap(motion)
+        smallest = self.c * self._set_gap(motion)
         if smallest <= 0.0 and self.wall is None:
             return FaceState(Status.NO_FILM, np.full(6, np.nan), smallest)
         s.pressure[:, 0], s.pressure[:, -1] = self.known[:2]
@@ -182,11 +177,11 @@ class FaceFilm:
         self.fields = oil
         self._integrate()
         peak, contact = float(oil.P.max()) * k.pressure, float((self.annulus.weight * self.contact).sum())
-        return FaceState(status, self._wrench(), smallest, peak, self._power(), contact * k.R**2)
+        return FaceState(status, self._wrench(), smallest, peak, self._power(), contact * self.R**2)
 
     def flows(self) -> tuple[float, float]:
         """Flows of the last solution in at the inner radius and out at the outer one, m3/s."""
-        s, grid, unit = self.solver, self.annulus.grid, self.scales.c * self.scales.R**2
+        s, grid, unit = self.solver, self.annulus.grid, self.flow_scale
         (fx, fz, rate), (P, full) = s.couette_flows(), s.flow_pressures()
         inner, outer = end_flows(P, s.system.kz, fz, fx, rate, grid.width_x, grid.width_z, s.squeeze, full)
         return -unit * inner, unit * outer
@@ -197,8 +192,8 @@ class FaceFilm:
         The heat is ``power_loss`` and the work of the pressures above the cavity's on the oil that comes and goes. Oil
         that a cavity finds beyond what it has lost is taken in at the inner radius.
         """
-        s, k, (inner, outer), P = self.solver, self.scales, self.flows(), self.solver.flow_pressures()[0]
-        unit, out = k.c * k.R**2, s.system.kz[:, [0, -2]] * (P[:, [0, -2]] - P[:, [1, -1]])
+        s, (inner, outer), P = self.solver, self.flows(), self.solver.flow_pressures()[0]
+        unit, out = self.flow_scale, s.system.kz[:, [0, -2]] * (P[:, [0, -2]] - P[:, [1, -1]])
         widened = unit * float((self.annulus.weight * self.true_rate).sum())
         into, back = unit * float(out[:, 0].clip(0.0).sum()), unit * float((-out[:, 1]).clip(0.0).sum())
         p_in, p_out, cavity = np.where(np.isfinite(self.pressures), self.pressures, 0.0).tolist()
@@ -207,7 +202,7 @@ class FaceFilm:
 
     def flows_along(self) -> tuple[float, float]:
         """Flows of the last solution in at the first edge of a sector and out at the last one, m3/s."""
-        s, unit = self.solver, self.scales.c * self.scales.R**2
+        s, unit = self.solver, self.flow_scale
         fx, P, ends = s.couette_flows()[0], s.flow_pressures()[0], np.array([0, -2])
         first, last = (fx[ends] + s.system.kx[ends] * (P[ends] - P[ends + 1])).sum(axis=1).tolist()
         return unit * first, unit * last
@@ -220,14 +215,13 @@ class FaceFilm:
     @property
     def gap(self) -> np.ndarray:
         """Film gap of the last solution (n, m), m."""
-        return self.solver.H * self.scales.c
+        return self.solver.H * self.c
 
     def _set_gap(self, motion: np.ndarray) -> float:
         """Write gaps and weighted rate into the solver's buffers; return the smallest scaled gap of the surfaces."""
-        s, k, a = self.solver, self.scales, self.annulus
-        scale = np.array([1.0, k.R, k.R]) / k.c
+        s, a, scale = self.solver, self.annulus, self.by_place
         self.motion = motion
-        self.pose, self.rate, self.shift = motion[:3] * scale, self.squeeze * motion[3:6] * scale, motion[7:] / k.R
+        self.pose, self.rate, self.shift = motion[:3] * scale, self.squeeze * motion[3:6] * scale, motion[7:] / self.R
         s.H[:] = 1.0 + self.depth + np.tensordot(self.pose, self.shape, 1)
         s.HF[:] = 1.0 + self.link_depth + np.tensordot(self.pose, self.link_shape, 1)
         s.H_t[:] = np.tensordot(self.rate, self.shape, 1)
@@ -269,7 +263,7 @@ class FaceFilm:
 
     def _shear_matrices(self, densities: np.ndarray) -> np.ndarray:
         """``int u_k . u_l density dA`` (k, 3, 3) of densities (k, n, m), SI units, for the velocities of `Annulus`."""
-        R, out = self.scales.R, np.zeros((len(densities), 3, 3))
+        R, out = self.R, np.zeros((len(densities), 3, 3))
         whole, x, y, turn = products(self.annulus.link_moments, densities)
         out[:, 0, 0], out[:, 1, 1], out[:, 2, 2] = R**2 * turn, whole, whole
         out[:, 0, 1], out[:, 0, 2] = -R * y, R * x
@@ -279,12 +273,12 @@ class FaceFilm:
     def _weights(self) -> np.ndarray:
         """Weights (6, 6) of N, X, Y and E in the wrench without its shear, SI units."""
         k, s, (bx, by) = self.scales, self.side, self.motion[1:3]
-        out, half = np.zeros((6, 6)), 0.5 * k.pressure * k.c * k.R
+        out, half = np.zeros((6, 6)), 0.5 * k.pressure * self.c * self.R
         out[0, 0], out[1, 0], out[2, 0] = s * bx * k.force, s * by * k.force, s * k.force
-        out[3, 2], out[4, 1] = s * k.force * k.R, -s * k.force * k.R
-        out[5, 1], out[5, 2] = s * by * k.force * k.R, -s * bx * k.force * k.R
+        out[3, 2], out[4, 1] = s * k.force * self.R, -s * k.force * self.R
+        out[5, 1], out[5, 2] = s * by * k.force * self.R, -s * bx * k.force * self.R
         out[0, 4] = out[1, 5] = half
-        out[5, 3] = half * k.R
+        out[5, 3] = half * self.R
         return out
 
     def _wrench(self) -> np.ndarray:
@@ -294,13 +288,13 @@ class FaceFilm:
 
     def _power(self) -> float:
         k, sliding = self.scales, self.motion[6:]
-        half = 0.5 * k.pressure * k.c * k.R * np.array([k.R, 1.0, 1.0])
-        squeezed = k.force * k.c * float((self.annulus.weight * self.fields.P * self.true_rate).sum())
+        half = 0.5 * k.pressure * self.c * self.R * np.array([self.R, 1.0, 1.0])
+        squeezed = k.force * self.c * float((self.annulus.weight * self.fields.P * self.true_rate).sum())
         return float(sliding @ self.shear @ sliding - sliding @ (half * self.carried)) - squeezed
 
     def tangent(self) -> np.ndarray:
         """d wrench / d motion (6, 9) of the last evaluation, exact for its active set."""
-        k, n, R = self.scales, self.side, self.scales.R
+        k, n, R = self.scales, self.side, self.R
         gradient = self._gradients()
         out = self._weights() @ gradient[:6]
         N, X, Y = (k.force * self.loads * np.array([1.0, R, R])).tolist()
@@ -311,9 +305,8 @@ class FaceFilm:
         out[5, 2] += n * X
         rows, sliding = [5, 0, 1], self.motion[6:]
         out[rows, 6:] -= self.shear
-        scale = np.array([1.0, R, R]) / k.c
         thinner = -self.sheared * self.face_slope / self.solver.HF
-        out[rows, :3] -= (self._shear_matrices(thinner * self.link_shape) @ sliding).T * scale
+        out[rows, :3] -= (self._shear_matrices(thinner * self.link_shape) @ sliding).T * self.by_place
         if len(gradient) > 6:
             out[rows] -= k.shear * gradient[6:]
         return np.asarray(out)
@@ -344,7 +337,7 @@ class FaceFilm:
 
     def _drag_of_viscosity(self) -> np.ndarray:
         """Derivatives (3, n, m) of S to the viscosity ratio at the vertices, scaled as `_shear_matrices`."""
-        a, R, (turn, u_x, u_y) = self.annulus, self.scales.R, self.motion[6:]
+        a, R, (turn, u_x, u_y) = self.annulus, self.R, self.motion[6:]
         _, x, y, _ = a.link_moments
         U_x, U_y = u_x - turn * R * y, u_y + turn * R * x
         on_links = np.array([R * (x * U_y - y * U_x), U_x, U_y]) * a.link_weight / self.solver.HF
@@ -355,28 +348,21 @@ class FaceFilm:
 
         The last three also follow the gradients of the pressure, by ``drag`` times the viscosity's slopes.
         """
-        s, w, y = self.solver, self.solver.work, self.solver.system
-        unknown = w.order[: w.count]
-        rows = fields.reshape(len(fields), -1)[:, unknown]
-        rows *= w.active.reshape(-1)[unknown]
-        if y.continued is not None:
-            rows_of_linear(y.continued, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
+        by_gradient = None
         if drag is not None and self.fields.ratio_g is not None and isinstance(self.sliding, ShearThinning):
-            by_gradient = [self.sliding.gather(self.fields.ratio_g * own) for own in drag]
-            rows[6:] += np.reshape(by_gradient, (3, -1))[:, unknown]
-        s.solve_transposed(rows)
-        return rows
+            by_gradient = np.zeros_like(fields)
+            by_gradient[6:] = [self.sliding.gather(self.fields.ratio_g * own) for own in drag]
+        return self.solver.adjoint(fields * self.solver.work.active, by_gradient)
 
     def _by_motion(self, cell: np.ndarray, face: np.ndarray, rate: np.ndarray, speed: np.ndarray) -> np.ndarray:
         """Gradients (k, 9) to the motion, SI units, from those of `Gradients.fields`."""
-        k = self.scales
         pose = products(cell, self.shape) + products(face, self.link_shape)
         through, whole = products(rate, self.shape), rate.sum(axis=(1, 2))
         # the shift's rate -side u . b / 2 in scaled tilt and shift
         pose[:, 1:] -= 0.5 * self.side * np.outer(whole, self.shift)
         shift = products(rate, self.shifted) - 0.5 * self.side * np.outer(whole, self.pose[1:])
-        scale = np.array([1.0, k.R, k.R]) / k.c
-        return np.concatenate((pose * scale, self.squeeze * through * scale, 0.5 * speed[:, :1], shift / k.R), axis=1)
+        by_place, by_rate = pose * self.by_place, self.squeeze * through * self.by_place
+        return np.concatenate((by_place, by_rate, 0.5 * speed[:, :1], shift / self.R), axis=1)
 
 
 def sliding_law(oil: Lubricant, turbulence: NgPan | Hirs | None, annulus: Annulus, clearance: float) -> LinkLaw | None:

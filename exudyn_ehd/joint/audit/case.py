@@ -104,8 +104,8 @@ class Case:
     numbers : dict of str to (n,) arrays
         Numbers of the films, see `film_numbers`.
     resolutions : list of Resolution
-    axes, entries : int
-        Numbers of components: of the film's force that are compared, and of a motion of rigid surfaces.
+    axes : int
+        Number of components of the film's force that are compared.
     tolerance : float
         Unbalance over the load up to which two films carry the same load. Larger: less accurate changes.
     replays : bool
@@ -121,7 +121,7 @@ class Case:
         If there is no film at any state.
     """
 
-    axes, entries, tolerance, replays = 2, MOTION_SIZE, 1e-3, True
+    axes, tolerance, replays = 2, 1e-3, True
     surface, steel = "bore", "a steel ring"
     omitted: ClassVar[Mapping[str, str]] = {}
 
@@ -244,7 +244,7 @@ class Case:
         if not size > SMALL * b.reference_force(float(self.slide(motion)[0] + rates)):
             return None
         if remembers:
-            reached = other.evaluate_steady(its.motion[: self.entries], its.history, its.step, its.spin)
+            reached = other.evaluate_steady(its.motion[: other.motion_size], its.history, its.step, its.spin)
             if reached.status is not Status.CONVERGED:
                 return None
             share = max(float(np.linalg.norm(reached.wrench[: self.axes])) / size, 1e-12)
@@ -268,7 +268,12 @@ class Case:
         Newton's method finds the position; a step is halved until the force is nearer to the wanted one. The load is
         nan without a film at the first position, the film None if the search fails.
         """
-        steady, k, b, motion = self.steady(other, mine), force.size, other.bearing, mine.motion[: self.entries].copy()
+        steady, k, b, motion = (
+            self.steady(other, mine),
+            force.size,
+            other.bearing,
+            mine.motion[: other.motion_size].copy(),
+        )
         is_soft, share = other.flexible or b.contact is not None or b.asperity is not None, math.nan
         # the first step goes from the centre to the state's position; halved steps reach a film between both
         place, step, error = np.zeros(k), motion[:k].copy(), math.inf

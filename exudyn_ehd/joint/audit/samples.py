@@ -279,7 +279,7 @@ def film_numbers(model: BearingModel, evaluation: Evaluation) -> dict[str, float
         "to_bush": to_bush,
         "to_journal": to_journal,
         "cavitated": float(np.sum(weight[~unbroken])),
-        "tension": float(np.sum(weight[film.oil.P * film.scales.pressure < VAPOUR_PRESSURE])),
+        "tension": float(np.sum(weight[film.pressure < VAPOUR_PRESSURE])),
         "tilt_loss": float(tilt_loss(b, w.motion[None])[0]),
         "deflection": q.get("bore_displacement", 0.0),
         "compliance": STEEL_COMPLIANCE * b.journal_radius / STEEL["youngs_modulus"],

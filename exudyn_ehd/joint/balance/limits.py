@@ -210,13 +210,12 @@ def advice(status: Status, bearing: object) -> str:
 
 def no_film(evaluation: Evaluation, where: str) -> str:
     """Return the message for an evaluation without a steady film; it begins with ``where``."""
-    x, y, bx, by = evaluation.motion[:4]
     remedy = advice(evaluation.status, evaluation.model.bearing)
     if isinstance(evaluation, ElasticEvaluation) and evaluation.status is not Status.NO_PRESSURE:
         remedy = _without_a_shape(evaluation)
     return (
-        f"{where}: {evaluation.status.name} at x = {x:.4g} m, y = {y:.4g} m, tilt = ({bx:.3g}, {by:.3g}), minimum film "
-        f"thickness {evaluation.minimum_gap:.3g} m: {remedy}"
+        f"{where}: {evaluation.status.name} at {evaluation.place}, minimum film thickness "
+        f"{evaluation.minimum_gap:.3g} m: {remedy}"
     )
 
 

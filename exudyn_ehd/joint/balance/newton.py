@@ -155,7 +155,7 @@ class Balance:
         self.count += 1
         T, thermal, k = temperature, self.thermal, len(self.free)
         history = self.held if thermal is None else History(temperature=T if T.ndim else float(T))
-        evaluation = self.model.evaluate_steady(motion[:MOTION_SIZE], history)
+        evaluation = self.model.evaluate_steady(motion[: self.model.motion_size], history)
         film = evaluation.film
         if film is None or evaluation.status is not Status.CONVERGED:
             raise FilmError(no_film(evaluation, self.where))

@@ -21,7 +21,9 @@ from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import transform_of
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureTransform
 from exudyn_ehd.film.models import film_grid, film_solver
+from exudyn_ehd.film.reynolds.gap import add_gap
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkLaw, ShearFactor, ShearProduct
+from exudyn_ehd.film.solvers.solver import FilmSolver
 from exudyn_ehd.film.solvers.winkler import Liner
 from exudyn_ehd.film.supply.areas import Hole
 from exudyn_ehd.film.supply.cuts import SupplyMap
@@ -30,7 +32,7 @@ from exudyn_ehd.film.surfaces.contact import ArchardWear, Contact, ElasticLiner,
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
 from exudyn_ehd.film.surfaces.roughness import AsperityContact, AverageGap, RoughFlow
 from exudyn_ehd.joint.heat.temperature import LumpedTemperature, OilTemperature
-from exudyn_ehd.joint.solved_film import ContactFields, FilmParts, History, LimiterFields, SolvedFilm
+from exudyn_ehd.joint.solved_film import ContactFields, ExtraGap, FilmParts, History, LimiterFields, SolvedFilm
 
 
 class GapTerm(Protocol):
@@ -81,6 +83,26 @@ class Effects:
     liner: ElasticLiner | None = None
     lobes: LobeTerm | None = None
 
+    def add_gap_terms(
+        self, solver: FilmSolver, history: History | None, displacement: np.ndarray | None, rate: np.ndarray
+    ) -> tuple[float, ExtraGap]:
+        """Add the gap terms, and the displacement of a flexible bore with its rate, to the gaps in ``solver``.
+
+        Returns the smallest gap, scaled, and the added fields.
+        """
+        s, surfaces = solver, [term.field(history) for term in self.gap_terms]
+        fields = surfaces if displacement is None else [*surfaces, displacement]
+        height = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
+        rate = rate if s.squeeze else s.nothing
+        if history is not None and history.growth is not None:
+            rate = rate + history.growth
+        if self.lobes is not None:
+            s.HF += self.lobes.between
+        smallest, slopes = add_gap(height, rate, s.grid, s.H, s.HF, s.H_t)
+        if self.lobes is not None:
+            slopes += self.lobes.slopes
+        return smallest, ExtraGap(height, slopes[0], slopes[1], surfaces)
+
 
 def _reservoirs(bearing: JournalBearing, supply: SupplyMap, effects: Effects) -> Reservoirs:
     """Supply areas with a restrictor, whose oil has the viscosity of the supply temperature."""
@@ -93,14 +115,14 @@ def _reservoirs(bearing: JournalBearing, supply: SupplyMap, effects: Effects) ->
     return Reservoirs(restrictors, masks, (viscosity, oil.density), scale, effects.pressure_law)
 
 
-def grid_of(bearing: JournalBearing, start_angle: float = 0.0, open_ring: bool = False) -> FilmGrid:
+def grid_of(bearing: JournalBearing, start_angle: float = 0.0) -> FilmGrid:
     """Grid of a bearing's film that starts at ``start_angle``, rad."""
     return film_grid(
         bearing.film,
         bearing.journal_radius,
         bearing.length,
         start_angle=start_angle,
-        open_ring=open_ring,
+        open_ring=isinstance(bearing.inlet, MaximumGap),
         supply=bearing.supply,
         conserves_mass=bearing.closure.conserves_mass,
         arcs=bearing.bore_arcs,
@@ -108,10 +130,9 @@ def grid_of(bearing: JournalBearing, start_angle: float = 0.0, open_ring: bool =
     )
 
 
-def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) -> FilmParts:
-    """Parts of the model of a bearing with its effects, on the grid that starts at ``start_angle``, rad."""
-    R, c = bearing.journal_radius, bearing.radial_clearance
-    grid, supply = grid_of(bearing, start_angle, isinstance(bearing.inlet, MaximumGap)), None
+def film_parts(bearing: JournalBearing, effects: Effects, grid: FilmGrid) -> FilmParts:
+    """Parts of the model of a bearing with its effects on a grid."""
+    R, c, supply = bearing.journal_radius, bearing.radial_clearance, None
     if bearing.supply:
         supply = SupplyMap(bearing.supply, grid, getattr(bearing.film, "circumferential_pressure_flow", True))
         grid = supply.grid

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from exudyn_ehd.film.loads import couette_integral, journal_wrench, pressure_integrals
+from exudyn_ehd.film.loads import Scales, couette_integral, journal_wrench, pressure_integrals
 from exudyn_ehd.film.reynolds.gap import on_links
 from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
@@ -15,13 +15,11 @@ from exudyn_ehd.film.surfaces import roughness
 from exudyn_ehd.film.surfaces.contact import add_contact
 from exudyn_ehd.joint.heat.temperature import OilTemperature
 from exudyn_ehd.joint.solved_film import (
-    ContactFields,
-    ExtraGap,
     FilmParts,
+    GapState,
     JournalMotion,
     LimiterFields,
     Loads,
-    Scales,
 )
 
 
@@ -30,13 +28,11 @@ def film_loads(
     scales: Scales,
     journal: JournalMotion,
     oil: OilFields,
-    extra: ExtraGap | None,
-    pressing: ContactFields | None,
-    limited: LimiterFields | None,
+    gap: GapState,
     recess: RecessShear | None = None,
 ) -> Loads:
     """Loads of the film whose solution is in the buffers of ``parts.solver``."""
-    s, g, P = parts.solver, parts.grid, oil.P
+    s, g, P, (_, extra, pressing, limited) = parts.solver, parts.grid, oil.P, gap
     integrals = np.empty(4)
     pressure_integrals(P, g.weight, g.gap_shapes, integrals)
     extra_theta = extra_z = 0.0

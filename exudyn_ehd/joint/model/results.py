@@ -297,7 +297,7 @@ def film_record(film: SolvedFilm) -> FilmRecord:
     return FilmRecord(
         theta=grid.x.copy(),
         z=grid.z * grid.reference_length,
-        pressure=film.oil.P * film.scales.pressure,
+        pressure=film.pressure,
         gap=solver.H * bearing.radial_clearance,
         unbroken=solver.work.active.copy(),
         fill=solver.fill.copy() if solver.closure.conserves_mass else None,

@@ -30,10 +30,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.heat.options import Walls
-from exudyn_ehd.film.reynolds.gap import add_gap, rigid_gaps
+from exudyn_ehd.film.loads import film_scales
+from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.solvers.answers import OilFields
-from exudyn_ehd.joint.model.effects import Effects, film_parts
+from exudyn_ehd.joint.model.effects import Effects, film_parts, grid_of
 from exudyn_ehd.joint.model.loads import film_loads, recess_of
 from exudyn_ehd.joint.model.results import FilmFields, eccentricities, film_fields, quantities
 from exudyn_ehd.joint.solved_film import (
@@ -43,10 +45,10 @@ from exudyn_ehd.joint.solved_film import (
     ContactFields,
     ExtraGap,
     FacesHeat,
+    GapState,
     History,
     JournalMotion,
-    LimiterFields,
-    Scales,
+    Loads,
     SolvedFilm,
 )
 from exudyn_ehd.joint.tangent.wrench import wrench_tangent
@@ -79,6 +81,12 @@ class Evaluation:
     minimum_gap: float
     film: SolvedFilm | None = field(repr=False)
     model: BearingModel = field(repr=False)
+
+    @property
+    def place(self) -> str:
+        """Place of the journal, for messages."""
+        x, y, bx, by = self.motion[:4]
+        return f"x = {x:.4g} m, y = {y:.4g} m, tilt = ({bx:.3g}, {by:.3g})"
 
     def tangent(self, slow_motion: bool = False) -> np.ndarray:
         """d wrench / d motion (6, 10), exact for the current active set, from the stored factor; nan without a film.
@@ -179,13 +187,27 @@ class BearingModel:
     start_angle : float
         theta of the first grid column, rad; the line of ambient pressure if the bearing's inlet is `MaximumGap`.
     effects : Effects
+    grid : FilmGrid, optional
+        Grid in place of that of the bearing.
+
+    Attributes
+    ----------
+    motion_size : int
+        Number of entries of a motion of rigid surfaces.
     """
 
-    flexible = False
+    flexible, motion_size = False, MOTION_SIZE
 
-    def __init__(self, bearing: JournalBearing, *, start_angle: float = 0.0, effects: Effects | None = None) -> None:
+    def __init__(
+        self,
+        bearing: JournalBearing,
+        *,
+        start_angle: float = 0.0,
+        effects: Effects | None = None,
+        grid: FilmGrid | None = None,
+    ) -> None:
         self.bearing, self.effects = bearing, Effects() if effects is None else effects
-        self.parts = p = film_parts(bearing, self.effects, start_angle)
+        self.parts = p = film_parts(bearing, self.effects, grid_of(bearing, start_angle) if grid is None else grid)
         self.grid, self.solver = p.grid, p.solver
         self.needs_spin = p.supply is not None and p.supply.rotating
         self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
@@ -193,7 +215,6 @@ class BearingModel:
         self.remembers = self.remembers_mass or self.remembers_deflection or p.solver.pockets is not None
         self.remembers = self.remembers or self.effects.thermal is not None or self.effects.wear is not None
         self._known = np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure, *bearing.edge_pressures])
-        self._scale = p.motion_scale[:8]
         # displacement of a flexible bore and its rate, scaled
         self._displacement: np.ndarray | None = None
         self._rate = p.solver.nothing
@@ -202,14 +223,11 @@ class BearingModel:
     def _set_viscosity(self, ratio: float) -> None:
         """Set the scales for ``ratio`` times the reference viscosity."""
         b, p, law = self.bearing, self.parts, self.effects.pressure_law
-        mu, R, c = ratio * b.lubricant.viscosity, b.journal_radius, b.radial_clearance
-        pressure = 12.0 * mu * R**2 / c**2
-        known = self._known / pressure
-        self.viscosity_ratio = ratio
-        edges = known[3:] * np.tile((-1.0, 1.0), len(p.grid.edges)) if known[3:].any() else None
-        self.scales = Scales(pressure, pressure * R**2, mu * R**2 / c, known[:2], float(known[2]), edges)
+        R, c, self.viscosity_ratio = b.journal_radius, b.radial_clearance, ratio
+        self.scales = film_scales(ratio * b.lubricant.viscosity, R, c, self._known)
+        pressure = self.scales.pressure
         # prescribed pressures for the solver, transformed by a pressure law
-        self._prescribed = known if law is None else law.transform(self._known) / pressure
+        self._prescribed = (self._known if law is None else law.transform(self._known)) / pressure
         if p.liner is not None and self.effects.liner is not None:
             p.liner.beta = self.effects.liner.compliance * pressure / c
         p.solver.pressure_scale = pressure
@@ -308,7 +326,8 @@ class BearingModel:
         # a sum is finite only if all its terms are
         if not math.isfinite(sum(journal.motion.tolist())):
             return self._result(Status.NOT_FINITE, journal, 0, math.nan)
-        smallest, extra, pressing, limited = self._set_gap(journal, history)
+        gap = self._set_gap(journal, history)
+        smallest = gap.smallest
         if smallest <= 0.0 and not self.effects.contacts and p.liner is None:
             return self._result(Status.NO_FILM, journal, 0, c * smallest)
         status, iterations = self._solve(journal, history, step)
@@ -319,13 +338,12 @@ class BearingModel:
             return self._result(status, journal, iterations, c * smallest)
         if p.liner is not None:
             smallest = p.liner.smallest_gap()
-            if p.contacts is not None:
-                pressing = p.contacts if smallest < p.contacts.presses_below else None
-        recess = recess_of(p, self.scales, journal, self.effects.thermal, temperature)
-        loads = film_loads(p, self.scales, journal, oil, extra, pressing, limited, recess)
+            if p.contacts is not None and smallest < p.contacts.presses_below:
+                gap = gap._replace(pressing=p.contacts)
+        loads = self._loads(journal, oil, gap, temperature)
         state = p, self.grid, self.solver, self.scales, journal, history, step, temperature
-        bore, fields = self._bore_state(journal, oil, pressing, float(loads.wrench[5])), (extra, pressing, limited)
-        film = SolvedFilm(*state, *fields, oil, loads, c * smallest, bore, p.evaluations, walls)
+        bore = self._bore_state(journal, oil, gap.pressing, float(loads.wrench[5]))
+        film = SolvedFilm(*state, *gap[1:], oil, loads, c * smallest, bore, p.evaluations, walls)
         return self._result(status, journal, iterations, c * smallest, film)
 
     def _result(
@@ -333,6 +351,13 @@ class BearingModel:
     ) -> Evaluation:
         wrench = np.full(6, np.nan) if film is None else film.loads.wrench
         return Evaluation(status, journal.motion, wrench, iterations, gap, film, self)
+
+    def _loads(
+        self, journal: JournalMotion, oil: OilFields, gap: GapState, temperature: float | np.ndarray | None
+    ) -> Loads:
+        """Loads of the film in the solver's buffers."""
+        recess = recess_of(self.parts, self.scales, journal, self.effects.thermal, temperature)
+        return film_loads(self.parts, self.scales, journal, oil, gap, recess)
 
     def _bore_state(
         self, journal: JournalMotion, oil: OilFields, pressing: ContactFields | None, moment: float
@@ -342,7 +367,7 @@ class BearingModel:
 
     def _journal(self, motion: np.ndarray, spin: float) -> JournalMotion:
         motion = np.array(motion, dtype=float)
-        scaled = motion[:8] * self._scale
+        scaled = motion[:8] * self.parts.motion_scale[:8]
         return JournalMotion(motion, scaled[:4], scaled[4:], float(motion[8]), float(motion[9]))
 
     def _set_temperature(self, history: History | None, step: float) -> tuple[float | np.ndarray | None, Walls | None]:
@@ -355,43 +380,27 @@ class BearingModel:
             self._set_viscosity(ratio)
         return thermal.split(temperature)
 
-    def _set_gap(
-        self, journal: JournalMotion, history: History | None
-    ) -> tuple[float, ExtraGap | None, ContactFields | None, LimiterFields | None]:
-        """Write the gaps of a motion into the solver's buffers.
-
-        Returns the smallest gap, scaled, and ``extra``, ``pressing`` and ``limited`` of `SolvedFilm`.
-        """
-        s, p, at = self.solver, self.parts, self.grid.directions
-        smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, p.grid.closed, s.H, s.HF, s.H_t)
-        extra = None
-        if self.effects.gap_terms or self.flexible:
-            smallest, extra = self._add_gap_terms(history)
+    def _set_gap(self, journal: JournalMotion, history: History | None) -> GapState:
+        """Write the gaps of a motion into the solver's buffers."""
+        s, p = self.solver, self.parts
+        smallest, extra = self._set_surfaces(journal, history)
         if p.liner is not None:
-            return smallest, extra, None, None
+            return GapState(smallest, extra, None, None)
         pressing = None if p.contacts is None else p.contacts.press(s.H, smallest)
         limiter, f, limited = self.effects.limiter, p.limiter, None
         if limiter is not None and f is not None and smallest < limiter.limits_below:
             limited = f
             f.gap[:], f.link[:], f.rate[:] = s.H, s.HF, s.H_t
             limiter.limit(s.H, s.HF, s.H_t, f.slope, f.bend, f.face_slope)
-        return smallest, extra, pressing, limited
+        return GapState(smallest, extra, pressing, limited)
 
-    def _add_gap_terms(self, history: History | None) -> tuple[float, ExtraGap]:
-        """Add the gap terms and a bore's displacement; return the smallest gap, scaled, and the added fields."""
-        s = self.solver
-        surfaces = [term.field(history) for term in self.effects.gap_terms]
-        fields = surfaces if self._displacement is None else [*surfaces, self._displacement]
-        height = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
-        rate = self._rate if s.squeeze else s.nothing
-        if history is not None and history.growth is not None:
-            rate = rate + history.growth
-        if self.effects.lobes is not None:
-            s.HF += self.effects.lobes.between
-        smallest, slopes = add_gap(height, rate, self.grid, s.H, s.HF, s.H_t)
-        if self.effects.lobes is not None:
-            slopes += self.effects.lobes.slopes
-        return smallest, ExtraGap(height, slopes[0], slopes[1], surfaces)
+    def _set_surfaces(self, journal: JournalMotion, history: History | None) -> tuple[float, ExtraGap | None]:
+        """Write the gaps of the surfaces; return the smallest one, scaled, and ``extra`` of `SolvedFilm`."""
+        s, p, at = self.solver, self.parts, self.grid.directions
+        smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, p.grid.closed, s.H, s.HF, s.H_t)
+        if not (self.effects.gap_terms or self.flexible):
+            return smallest, None
+        return self.effects.add_gap_terms(s, history, self._displacement, self._rate)
 
     def _solve(self, journal: JournalMotion, history: History | None, step: float) -> tuple[Status, int]:
         """Solve the film for the gaps and the prescribed pressures in the solver's buffers."""

@@ -3,7 +3,6 @@
 Module map
 ----------
 bearing  `SphericalBearing`, the description of a ball joint; film grid of a patch of a sphere
-film     one film: gaps, solution, loads on the ball, heat
-model    evaluations, memory of a film, exact tangent
+model    gap, loads, heat, evaluations, steady film and exact tangent of one film
 steady   film at a prescribed position; audit of a ball joint
 """

@@ -158,12 +158,10 @@ class SphereFlow(FluxEffect):
             self.turn += moved
             self.lean -= moved[:, :, None] * (n - ends)[:, None] / clearance
 
-    def take(self, spin: np.ndarray, place: np.ndarray, slope: np.ndarray) -> tuple[float, float]:
-        """Set w (3,), e (3,) and S; return the scaled speeds for `FilmSolver.solve`, 1/s."""
+    def take(self, spin: np.ndarray, place: np.ndarray, slope: np.ndarray) -> None:
+        """Set w (3,), e (3,) and S."""
         self.along, self.by_place = np.tensordot(spin, self.turn, (0, 1)), np.tensordot(spin, self.lean, (0, 1))
         self.place, self.slope, self.rest = place, slope, np.tensordot(place, self.by_place, (0, 1))
-        # a spin about the socket's axis moves oil along the rows only
-        return 0.5 * float(np.linalg.norm(spin)), 0.5 * math.hypot(spin[0], spin[1])
 
     def flows(self, gap_x: np.ndarray, gap_z: np.ndarray) -> np.ndarray:
         """Couette flows (2, n, m) of a full film over the links; the last row has the flows over the last edge."""
@@ -258,7 +256,7 @@ class SphericalBearing(Checked):
     The socket is the part of a sphere between two circles around the joint's z axis, fixed in the housing. Colatitudes
     count from +z: (0, pi/2) is a hemispherical cup on the side of +z, which carries a ball that is pushed along +z. A
     socket that ends beyond pi/2 also holds the ball along -z. The edges are open to the ambient pressure. Equations and
-    assumptions: `exudyn_ehd.joint.spherical.film`.
+    assumptions: `exudyn_ehd.joint.spherical.model`.
 
     Errors of the default grid. Squeeze force of the cup, against the closed form: 0.02 % up to eccentricity ratio 0.5,
     0.4 % at 0.9. Any motion in any direction, in sockets closed or open at the pole: force up to 1 % at eccentricity
@@ -317,7 +315,7 @@ class SphericalBearing(Checked):
 
     # attributes of every bearing that a joint's checks and audits read
     bush = yielding = journal = asperity = roughness = wear = film = turbulence = inlet = None
-    profiles = supply = bore_arcs = ()
+    profiles = supply = bore_arcs = edge_pressures = ()
     end_pressures, squeeze = (0.0, 0.0), True
     levers = (1.0, 1.0, 1.0, 0.0)
 
@@ -391,6 +389,11 @@ class SphericalBearing(Checked):
         first, last = self.socket_angles
         nearest = min(max(math.atan2(across, z), first), last)
         return self.radial_clearance - (across * math.sin(nearest) + z * math.cos(nearest))
+
+    @property
+    def closure(self) -> Closure:
+        """The cavitation model, whose line is placed."""
+        return self.cavitation
 
     @property
     def journal_radius(self) -> float:

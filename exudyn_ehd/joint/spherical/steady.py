@@ -30,16 +30,23 @@ from exudyn_ehd.joint.audit.resolution import Resolution, intervals_at_half
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, Sources, squeeze_share
 from exudyn_ehd.joint.audit.switches import ROUGH_STEEL, STEEL, VAPOUR_PRESSURE
 from exudyn_ehd.joint.balance.limits import (
-    advice,
-    outside_table,
-    require_oil_bears,
+    no_film,
+    require_bearable,
     warn_of_heat,
     warn_of_overload,
 )
 from exudyn_ehd.joint.solved_film import LARGEST_SPREAD
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY
-from exudyn_ehd.joint.spherical.model import SphericalEvaluation, SphericalModel, steady_history
+from exudyn_ehd.joint.spherical.model import (
+    PLACE,
+    SIZE,
+    SPIN,
+    VELOCITY,
+    SphericalEvaluation,
+    SphericalModel,
+    loads_of,
+    steady_film,
+)
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.pictures.records import Figure, PolarAxes, Target, shown
 from exudyn_ehd.status import FilmError, Status, require_type, require_vector
@@ -74,8 +81,8 @@ def audit_ball(bearing: SphericalBearing, motions: np.ndarray, record: RecordedS
     for motion in motions:
         # `Case` raises an error if no motion has a film
         with contextlib.suppress(FilmError):
-            states.append(FilmState(motion, steady_history(model, motion)))
-    return audit_of(BallCase(model, states, record), BALL_ROWS)  # type: ignore[arg-type]
+            states.append(FilmState(motion, steady_film(model, motion, "audit").solved.history))
+    return audit_of(BallCase(model, states, record), BALL_ROWS)
 
 
 def ball_sources(motions: np.ndarray) -> Sources:
@@ -95,10 +102,10 @@ def moved_oil(b: SphericalBearing, motions: np.ndarray) -> np.ndarray:
 class BallCase(Case):
     """Films of a ball at the audited motions (11,)."""
 
-    model: SphericalModel  # type: ignore[assignment]
+    model: SphericalModel
     bearing: SphericalBearing  # type: ignore[assignment]
     # a smaller tolerance than for journals: the force depends only weakly on the position in some directions
-    axes, entries, tolerance = 3, SIZE, 3e-4
+    axes, tolerance = 3, 3e-4
     replays = False
     surface, steel = "socket", "steel under the peak"
     omitted: ClassVar[Mapping[str, str]] = {
@@ -116,8 +123,8 @@ class BallCase(Case):
     def steady(  # type: ignore[override]
         self, other: SphericalModel, mine: FilmState
     ) -> Callable[[np.ndarray], SphericalEvaluation]:
-        """Return the function of a motion that evaluates another ball's film with its `steady_history`."""
-        return lambda motion: other.evaluate(motion, steady_history(other, motion))
+        """Return the function of a motion that evaluates another ball's `steady_film`."""
+        return lambda motion: steady_film(other, motion, "audit")
 
     def sources(self, motions: np.ndarray) -> Sources:
         """Sources of Reynolds' equation by motions (n, 11)."""
@@ -138,6 +145,7 @@ class BallCase(Case):
         film, b, motion, area = found.film, self.bearing, found.motion, self.model.patch.area
         assert film is not None
         R, p, share = b.ball_radius, film.pressure, area / area.sum()
+        unbroken = self.model.solver.work.active | self.model.grid.fixed
         i, j = divmod(int(p.argmax()), p.shape[1])
         half = p.shape[0] // 2
         around, along = intervals_at_half(np.roll(p[:, j], half - i), half), intervals_at_half(p[i], j)
@@ -151,8 +159,8 @@ class BallCase(Case):
             "viscosity": b.lubricant.viscosity * self.model.viscosity_ratio,
             "rise": 0.0
             if film.temperature is None or b.thermal is None
-            else film.temperature - known_supply(b.thermal),
-            "cavitated": float(share[~film.unbroken].sum()),
+            else float(film.temperature) - known_supply(b.thermal),
+            "cavitated": float(share[~unbroken].sum()),
             "tension": float(share[p < VAPOUR_PRESSURE].sum()),
             "compliance": 4.0 * (1.0 - STEEL["poisson_ratio"] ** 2) / STEEL["youngs_modulus"] * radius,
         }
@@ -227,7 +235,7 @@ class SphericalResult:
         Power loss, W; force of the contact, N, a part of ``force``.
     bearing : SphericalBearing
     motion : (11,) array
-        Place, velocity and angular velocity, as in `exudyn_ehd.joint.spherical.film`.
+        Place, velocity and angular velocity, as in `exudyn_ehd.joint.spherical.model`.
 
     Examples
     --------
@@ -276,10 +284,11 @@ def _derivatives(found: SphericalEvaluation) -> np.ndarray:
 
     For velocities the oil content is constant, also at velocity 0.
     """
-    tangent, sides, film = np.delete(found.tangent(), (3, 7), axis=1), found.sides(), found.film
-    if found.model.remembers_mass and sides is None and film is not None and not found.motion[VELOCITY].any():
-        kept = replace(found.model.next_history(film), temperature=film.temperature)
-        tangent[:, 3:6] = found.model.evaluate(found.motion, kept).tangent()[:, VELOCITY]
+    tangent, sides, model = np.delete(found.tangent(), (3, 7), axis=1), found.sides(), found.model
+    kept, T = found.history(), found.solved.temperature
+    if kept is not None and kept.void is not None and sides is None and not found.motion[VELOCITY].any():
+        held = model.evaluate(found.motion, replace(kept, temperature=T))
+        tangent[:, 3:6] = held.tangent()[:, VELOCITY]
     if sides is not None:
         blocks = np.delete(sides, (3, 7), axis=2).reshape(2, 2, 3, 3, 3)
         largest = LARGEST_SPREAD * np.abs(blocks).max(axis=(0, 2, 4), keepdims=True)[0]
@@ -337,37 +346,30 @@ def steady_spherical(
     motion[PLACE] = require_vector(f"{where}: place", place, 3, "m")
     motion[VELOCITY] = require_vector(f"{where}: velocity", velocity, 3, "m/s")
     motion[SPIN] = require_vector(f"{where}: angular_velocity", angular_velocity, 3, "rad/s")
-    model = SphericalModel(bearing)
-    return result_of(model.evaluate(motion, steady_history(model, motion, where)), where)
+    return result_of(steady_film(SphericalModel(bearing), motion, where), where)
 
 
 def result_of(found: SphericalEvaluation, where: str) -> SphericalResult:
     """Return the result of an evaluation, the last one of its model; errors in the name of ``where``."""
     film, motion, model, bearing = found.film, found.motion, found.model, found.model.bearing
     if film is None or found.status is not Status.CONVERGED:
-        raise FilmError(
-            f"{where}: {found.status.name} at place {motion[PLACE]} m, minimum film thickness "
-            f"{found.minimum_gap:.3g} m: {advice(found.status, bearing)}"
-        )
-    quantities = found.quantities()
-    force, peak = film.wrench[:3], quantities["peak_pressure"]
-    loads = found.minimum_gap, peak, float(np.linalg.norm(force))
-    warn_of_overload(cast(JournalBearing, bearing), *loads, where)
-    if message := outside_table(film):
-        raise FilmError(f"{where}: {message}")
-    require_oil_bears(film.temperature, model.grid, where)
-    warn_of_heat(film.temperature, model.grid, where)
+        raise FilmError(no_film(found, where))
+    quantities, loads, solver, T = found.quantities(), loads_of(film), model.solver, film.temperature
+    force, peak = loads.wrench[:3], quantities["peak_pressure"]
+    warn_of_overload(cast(JournalBearing, bearing), found.minimum_gap, peak, float(np.linalg.norm(force)), where)
+    require_bearable(film, where)
+    warn_of_heat(T, film.grid, where)
     return SphericalResult(
         phi=model.grid.x,
         chi=model.patch.chi,
         pressure=film.pressure,
-        gap=film.gap,
-        unbroken=film.unbroken,
-        fill=film.fill,
+        gap=solver.H * bearing.radial_clearance,
+        unbroken=solver.work.active | film.grid.fixed,
+        fill=solver.fill.copy() if model.remembers_mass else solver.ones,
         force=force,
-        torque=film.torque,
+        torque=loads.torque,
         tangent=_derivatives(found),
-        temperature=film.temperature,
+        temperature=None if T is None else float(T),
         minimum_gap=quantities["minimum_gap"],
         peak_pressure=peak,
         power_loss=quantities["power_loss"],

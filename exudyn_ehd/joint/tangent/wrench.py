@@ -184,7 +184,7 @@ def _rows_at(film: SolvedFilm, at: np.ndarray, continued: np.ndarray | None) -> 
         rows[:4] *= oil.P_q.ravel()[at]
         rows[own - 2 * extra : own] *= oil.P_q.ravel()[at]
     if shear:
-        rows[4] = _shear_weights(film, active).ravel()[at]
+        rows[4] = shear_weights(film, g.shear_weight).ravel()[at]
     if continued is not None:
         rows_of_linear(continued, y.fixed, y.linked, y.cavity_pressure, s.work.active, s.work.number, rows)
     # terms that depend on the pressure of the vertex itself
@@ -200,18 +200,19 @@ def _rows_at(film: SolvedFilm, at: np.ndarray, continued: np.ndarray | None) -> 
     return rows
 
 
-def _shear_weights(film: SolvedFilm, active: np.ndarray) -> np.ndarray:
-    """Weights of the unknowns in the Couette integral at the vertices (n, m).
+def shear_weights(film: SolvedFilm, weight: np.ndarray) -> np.ndarray:
+    """Weights (n, m) of the unknowns in the integral of the Couette shear with the integration weights ``weight``.
 
     Pressures act through the viscosity ratio, fills through the sheared share.
     """
     s, y, g, oil, out = film.solver, film.solver.system, film.grid, film.oil, np.empty(film.grid.shape)
+    active = s.work.active | g.fixed
     by_pressure = s.nothing if oil.ratio_q is None else oil.ratio_q
     if not s.closure.conserves_mass:
-        return g.shear_weight / s.H * by_pressure * active
+        return weight / s.H * by_pressure * active
     rise = s.nothing if s.oil_line is None else s.oil_line.rise
     oils = ratio_of(film), by_pressure, s.fill, rise
-    shear_by_unknown(g.shear_weight, s.H, *oils, active, g.fixed, s.pressure, y.cavity_pressure, out)
+    shear_by_unknown(weight, s.H, *oils, active, g.fixed, s.pressure, y.cavity_pressure, out)
     return out
 
 

@@ -9,8 +9,7 @@ from scipy.optimize import root
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.audit.samples import squeeze_rate, squeeze_share
-from exudyn_ehd.joint.spherical.film import PLACE
-from exudyn_ehd.joint.spherical.model import SphericalModel
+from exudyn_ehd.joint.spherical.model import PLACE, SphericalModel
 from exudyn_ehd.joint.spherical.steady import ball_sources
 from tests.sampling import sample
 

@@ -7,8 +7,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.spherical.film import SPIN, VELOCITY
-from exudyn_ehd.joint.spherical.model import SphericalModel
+from exudyn_ehd.joint.spherical.model import SPIN, VELOCITY, SphericalModel
 from tests.joint.spherical.test_model import BARUS, CUP, RING, WALL, C, R, motion, states
 
 SUPPLY = 313.15
@@ -27,7 +26,7 @@ def heat_and_flow(bearing, state):
     """Heat, W, and exchange of oil, m3/s, of a film."""
     model = SphericalModel(bearing)
     heat, exchanged = model.heat_and_exchange(model.evaluate(state).film, 1.0)
-    return heat, exchanged * model.flow_scale
+    return heat, exchanged * model.parts.flow_scale
 
 
 @pytest.mark.parametrize("closure", [CLOSURES[0], CLOSURES[2]])
@@ -96,7 +95,7 @@ def test_steady_temperatures_are_in_balance(closure, sump):
         content = model.evaluate(still, History(temperature=T)).history() if model.remembers_mass else History()
         found = model.evaluate(film.motion, History(T and content.void, content.mass, content.outflow, temperature=T))
         heat, exchanged = model.heat_and_exchange(found.film, 1.0)
-        flow = VG.density * VG.specific_heat * exchanged * model.flow_scale
+        flow = VG.density * VG.specific_heat * exchanged * model.parts.flow_scale
         carried = heat - 0.5 * (T - 300.0)
         assert carried == pytest.approx(flow * (T - SUPPLY - (carried / 2.0 if sump else 0.0)), rel=1e-6)
         assert film.force == pytest.approx(found.wrench[:3], rel=1e-9) and T > 300.0
@@ -132,7 +131,7 @@ def test_what_has_no_temperature_is_refused():
         ehd.steady_spherical(closed, place=(0, 0, 0), angular_velocity=(0, 0, 100.0))
     with pytest.raises(ehd.FilmError, match="no oil is a liquid above"):
         small = ball(VG, {"supply_temperature": SUPPLY, "housing_conductance": 1e-3})
-        ehd.steady_spherical(small, place=(0, 0, 0), angular_velocity=(0, 0, 3000.0))
+        ehd.steady_spherical(small, place=(0, 0, 0), angular_velocity=(0, 0, 1000.0))
 
 
 def test_an_audit_tells_that_a_film_warms_up():

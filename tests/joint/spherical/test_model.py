@@ -9,8 +9,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import spsolve
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.spherical.film import PLACE, SIZE, SPIN, VELOCITY
-from exudyn_ehd.joint.spherical.model import SphericalModel
+from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
 from exudyn_ehd.joint.spherical.steady import result_of
 from exudyn_ehd.status import Status
 
@@ -90,7 +89,10 @@ def test_errors_of_the_default_grid(angles, ratio, bound):
     for state in states(rng, 6):
         state[PLACE] *= ratio * C / np.linalg.norm(state[PLACE])
         found, best = film.evaluate(state).film, fine.evaluate(state).film
-        for mine, exact, most in ((found.wrench[:3], best.wrench[:3], bound), (found.torque, best.torque, 0.005)):
+        for mine, exact, most in (
+            (found.loads.wrench[:3], best.loads.wrench[:3], bound),
+            (found.loads.torque, best.loads.torque, 0.005),
+        ):
             assert np.linalg.norm(mine - exact) < most * np.linalg.norm(exact)
 
 
@@ -158,7 +160,7 @@ def test_film_is_that_of_a_plain_reference_in_other_coordinates():
     coarse, fine = (reference(RING, place, velocity, spin, n, n // 2) for n in (24, 48))
     film = model(socket_angles=RING, n_phi=96, n_chi=48, cavitation=ehd.FullSommerfeld())
     found = film.evaluate(motion(place, velocity, spin)).film
-    for k, mine in enumerate((found.wrench[:3], found.torque)):
+    for k, mine in enumerate((found.loads.wrench[:3], found.loads.torque)):
         best = fine[k] + (fine[k] - coarse[k]) / 3
         # the grid's own error and that of the reference, of second order both
         assert np.abs(mine - best).max() < 2e-3 * np.abs(best).max()
@@ -280,15 +282,15 @@ def test_work_is_heat(closure, wall, law):
     for state in states(rng, 5, 0.95 if wall is None else 1.02):
         state[VELOCITY] *= 1.0 if law is None else 0.1
         found = film.evaluate(state)
-        q, H, P = solver.system.linear_pressure, solver.H.copy(), found.film.pressure / film.pressure_scale
-        thick = found.film.ratio
+        q, H, P = solver.system.linear_pressure, solver.H.copy(), found.film.oil.P
+        thick = 1.0 if found.film.oil.ratio is None else found.film.oil.ratio
         slip = state[VELOCITY][:, None, None] + R * np.cross(state[SPIN], patch.normals, axisb=0, axisc=0)
         slip -= patch.normals * (slip * patch.normals).sum(0)
         couette = float((MU * R**2 / C * (slip**2).sum(0) * patch.area * thick / H).sum())
         kx, kz = solver.system.kx, solver.system.kz
         links = (kx * (P - np.roll(P, -1, 0)) * (q - np.roll(q, -1, 0))).sum()
         links += (kz[:, :-1] * np.diff(P, axis=1) * np.diff(q, axis=1)).sum()
-        heat = film.force_scale * C * float(links) + couette
+        heat = film.scales.force * C * float(links) + couette
         loss = found.quantities()["power_loss"]
         assert loss > 0.0
         if not closure.clips:
