@@ -96,8 +96,8 @@ def test_options_are_frozen_and_keyword_only():
 LONGEST_FILE, LONGEST_FUNCTION, MOST_PARAMETERS, MOST_FILES = 300, 60, 14, 13
 # Of the whole package: marks that keep the formatter off aligned tables,
 # annotations that say nothing, logical lines of code.
-MOST_SKIPS, MOST_ANY, MOST_CODE, MOST_MODULES = 7, 56, 24502, 199
-MOST_CONSTANTS = 395
+MOST_SKIPS, MOST_ANY, MOST_CODE, MOST_MODULES = 7, 56, 24543, 200
+MOST_CONSTANTS = 390
 # Beginnings of a clause without its noun: no docstring of package, tests and examples begins with one.
 BARE_CLAUSE = re.compile(
     r'^ *r?"""\s*((?:What|Whether|As|Of|The same|Where|Which|How|From|With|That|Those|Who|Whose|Why|For|At|When)\b.*)',

@@ -2,6 +2,7 @@
 
 Module map
 ----------
+newton       damped Newton's method and continuation, by which all searches for a steady balance proceed
 solved_film  record of one evaluation, from which all modules below read
 time_step    rates of a step that agree with its positions; error of a step within which the load jumps
 step_error   error of the gap by the time steps of a run

@@ -152,7 +152,7 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
     for target in (
         "heat.temperature.OilTemperature.viscosity_ratio",
         "heat.temperature.heat_and_exchange",
-        "balance.newton.foreseen",
+        "newton.Acceleration.step",
     ):
         monkeypatch.setattr(f"exudyn_ehd.joint.{target}", forbidden)
     for model in (expected, make(cavitation=cavitation)):

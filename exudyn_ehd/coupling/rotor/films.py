@@ -15,17 +15,10 @@ from exudyn_ehd.coupling.kinematics.sides import NodeSide, derivatives_between
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import HeldBore, SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.coupling.run.newton import SHARE
 from exudyn_ehd.joint.audit.resolution import warn_of_grid
 from exudyn_ehd.joint.balance.limits import require_bearable, warn_of_heat, warn_of_overload
-from exudyn_ehd.joint.balance.newton import (
-    FREE_STEP,
-    ROOM,
-    part_that_closes,
-    room_between_lobes,
-    settled_history,
-)
 from exudyn_ehd.joint.balance.position import first_guess
+from exudyn_ehd.joint.balance.steady_film import room, room_of_faces, settled_history
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.dynamic_stiffness import (
@@ -193,7 +186,7 @@ class RotorFilm:
             return []
         load, where = -forces[: model.pads.pads].sum(axis=0), f"{WHERE}: joint '{self.name}'"
         size = max(float(np.hypot(*load)), NO_LOAD * self.bearing.reference_force(speed))
-        loads = PadSearch(model.pads, speed, load, size, where).find().loads
+        loads = PadSearch(model.pads, speed, load, size, where).find().film
         if idle := [k + 1 for k, own in enumerate(loads) if not own.loaded]:
             raise FilmError(
                 f"{where}: pad {idle[0]} of the bearing is not loaded and has no definite tilt about which it would "
@@ -202,24 +195,16 @@ class RotorFilm:
         return [(own.wrench, own.motion[:2]) for own in loads]
 
     def room(self, x: np.ndarray) -> float:
-        """Largest part of a step x (size,) that leaves half of the gaps; `update` has run."""
-        change = self.by_place[:10] @ x[self.places]
-        c, part = self.bearing.radial_clearance, self.room_of_faces(x)
-        if self.model.effects.contacts or self.model.flexible:
-            return min(part, FREE_STEP * c / max(float(np.hypot(*change[:2])), 1e-300))
-        if self.bearing.bore_arcs:
-            return min(part, room_between_lobes(self.model, self.motion, change[:4]))
-        return min(part, part_that_closes(SHARE, self.motion, self.motion + change, c, self.bearing.length))
+        """Largest part of a step x (size,) for which all films of the joint have room; `update` has run."""
+        change = self.by_place[:4] @ x[self.places]
+        return min(room(self.model, self.motion, change), self.room_of_faces(x))
 
     def room_of_faces(self, x: np.ndarray) -> float:
-        """Largest part of a step x (size,) that uses up at most 60 % of the gaps of the end faces; `update` has run."""
-        thrust = self.bearing.thrust
-        if self._on_faces is None or thrust is None:
+        """Largest part of a step x (size,) for which the films on end faces have room; `update` has run."""
+        if self._on_faces is None:
             return 1.0
         change = self.by_place @ x[self.places]
-        closed = abs(float(change[10])) + thrust.outer_radius * float(np.hypot(*change[2:4]))
-        allowed = ROOM * self._on_faces.minimum_gap if thrust.contact is None else FREE_STEP * thrust.clearance
-        return min(1.0, allowed / max(closed, 1e-300))
+        return room_of_faces(self._on_faces, float(change[10]), float(np.hypot(*change[2:4])))
 
     def found(self, evaluation: Evaluation, tangent: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray | float]:
         """Return the values of one film at its equilibrium for `RotorResult`, and write its bore's coordinates to q."""

@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple, TypeAlias
+from dataclasses import dataclass
+from typing import TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -24,14 +25,11 @@ from exudyn_ehd.coupling.rotor.films import RotorFilm, film_model
 from exudyn_ehd.coupling.rotor.spinning import WHERE, Rotors, find_rotors
 from exudyn_ehd.coupling.rotor.system import HeldBore, SpinningSystem
 from exudyn_ehd.coupling.run.joint_state import Joint
-from exudyn_ehd.joint.bore.equilibrium import SETTLING_STEPS
 from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.joint.newton import ROUNDED, DampedNewton, SearchState, damped_step
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.status import ROUNDING, FilmError, InputError
 
-# Tolerance of the unbalance over the loads of the films, and over the largest term of a vibration's dynamic stiffness.
-# Larger: less accurate states, spurious vibrations.
-TOLERANCE = 1e-8
 NOT_HELD = (
     "nothing holds {}; hold it by a film, a spring or a constraint, a shaft along its axis by "
     "CreateLubricatedJoint(axial=ehd.Held())."
@@ -45,8 +43,16 @@ ISOTROPIC = 1e-4
 LEAST = 1e-12
 
 
-class ForceBalance(NamedTuple):
+# Evaluation of a film, and its tangent (6, 10).
+FilmTangent: TypeAlias = tuple[Evaluation, np.ndarray]
+
+
+@dataclass(eq=False)
+class ForceBalance(SearchState[list[FilmTangent]]):
     """Balance of all forces at a state, in the N directions x.
+
+    The unknowns ``x`` are the coordinates of the system; ``unbalance`` is the residual of the balance in the free
+    directions, N, with moments over a bearing's length; ``film`` holds all films with their tangents.
 
     Attributes
     ----------
@@ -58,10 +64,12 @@ class ForceBalance(NamedTuple):
         Directions that constraints and drives leave free.
     mend : (N,) array
         Step that satisfies the constraints.
-    multipliers : (m + r,) array
-        Change of the multipliers, and the torques of the drives.
-    residual, rounding : float
-        Unbalance over the films' loads, and its part by round-off of positions times stiffness.
+    multipliers : (m,) array
+        Multipliers that balance r in the directions of the constraints.
+    torques : (r,) array
+        Torques of the drives that do the same.
+    rounding : float
+        Part of the unbalance over its size that is due to round-off of positions times stiffness.
     """
 
     r: np.ndarray
@@ -70,7 +78,7 @@ class ForceBalance(NamedTuple):
     free: np.ndarray
     mend: np.ndarray
     multipliers: np.ndarray
-    residual: float
+    torques: np.ndarray
     rounding: float
 
 
@@ -78,7 +86,7 @@ class ForceBalance(NamedTuple):
 State: TypeAlias = tuple[dict[str, np.ndarray], tuple[FilmMemory, ...]]
 
 
-class EquilibriumSearch:
+class EquilibriumSearch(DampedNewton[ForceBalance]):
     """Search for the equilibria of one system, whose films are switched off in Exudyn during the search.
 
     Parameters
@@ -88,6 +96,8 @@ class EquilibriumSearch:
     rotors, ratios
         As in `SolveEquilibrium`.
     """
+
+    growth, tolerance = math.inf, ROUNDED
 
     def __init__(
         self, mbs: exu.MainSystem, joints: list[Joint], rotors: Rotors, ratios: Sequence[float] | None
@@ -105,7 +115,7 @@ class EquilibriumSearch:
         self.torques = np.zeros(len(self.system.rotors))
         self.rest: tuple[np.ndarray, np.ndarray]
         self.slope: np.ndarray | None = None
-        self.speed, self.count = math.nan, 0
+        self.speed = math.nan
 
     def at(self, speed: float) -> State:
         """Find the equilibrium at a speed, rad/s, starting from the last one; return its values for `RotorResult`.
@@ -119,7 +129,7 @@ class EquilibriumSearch:
         system.spins[:] = [speed * rotor.ratio for rotor in system.rotors]
         found = None
         if self.slope is not None:
-            self._move((speed - self.speed) * self.slope)
+            system.q = system.moved(self._within((speed - self.speed) * self.slope))
             found = self._newton()
         if found is None:
             self._start()
@@ -146,7 +156,7 @@ class EquilibriumSearch:
             "directions": free,
             "coordinates": system.q.copy(),
             "rates": system.maps() @ system.spin(),
-            "residual": balance.residual,
+            "residual": float(np.abs(balance.unbalance).max()) / balance.size,
             "evaluations": self.count,
         }
         memories = [film.memory(e, free) for film, (e, _) in zip(self.films, found, strict=True)]
@@ -162,7 +172,7 @@ class EquilibriumSearch:
             self._update()
             balance = self._balance([film.support(*part) for film, part in zip(self.films, supports, strict=True)])
             require_regular(self.system, self.weights, balance.K, balance.free, NOT_HELD)
-            step = self._step(balance)
+            step = balance.newton_step(0.0)
             self.system.q = self.system.moved(min(film.room_of_faces(step) for film in self.films) * step)
             self._update()
             forces = np.array([f.support(*part)[0][:2] for f, part in zip(self.films, supports, strict=True)])
@@ -177,19 +187,21 @@ class EquilibriumSearch:
         for film in self.films:
             film.update(self.system.q, u)
 
-    def _films(self) -> list[tuple[Evaluation, np.ndarray]] | None:
-        """Films and tangents at the state; None without a film."""
+    def _state(self) -> ForceBalance | None:
+        """Balance with all films at the present coordinates and multipliers; None without a film."""
         self._update()
-        out = []
+        films: list[FilmTangent] = []
         for film in self.films:
             self.count += 1
             if (evaluation := film.evaluate()) is None:
                 return None
             # each film has a separate model, so that the tangent belongs to this evaluation
-            out.append((evaluation, evaluation.steady_tangent(exact=True)))
-        return out
+            films.append((evaluation, evaluation.steady_tangent(exact=True)))
+        return self._balance([(e.wrench, tangent) for e, tangent in films], films)
 
-    def _balance(self, acting: list[tuple[np.ndarray, np.ndarray]]) -> ForceBalance:
+    def _balance(
+        self, acting: list[tuple[np.ndarray, np.ndarray]], films: list[FilmTangent] | None = None
+    ) -> ForceBalance:
         """Balance of all forces at the state, for wrenches (6,) and tangents (6, 10) of the films."""
         system, size = self.system, 0.0
         r, error = system.balance(system.q, system.spin())
@@ -213,41 +225,45 @@ class EquilibriumSearch:
         free = right[rank:].T
         mend = -inverse[:, : error.size] @ error
         scale = max(math.sqrt(size), 1e-300)
-        residual = float(np.abs(self.weights * (free @ (free.T @ r))).max()) / scale
+        unbalance, forces = self.weights * (free @ (free.T @ r)), -inverse.T @ r
         reach = max(float(np.abs(node.position(system.q)).max()) for node in system.nodes.values())
         rounding = (
             np.finfo(float).resolution * reach * float(np.abs(np.outer(self.weights, self.weights) * K).max()) / scale
         )
-        return ForceBalance(r, K, r_u, free, mend, -inverse.T @ r, residual, rounding)
+        count = system.multipliers.size
+        multipliers, torques = system.multipliers + forces[:count], forces[count:]
 
-    def _step(self, balance: ForceBalance) -> np.ndarray:
-        """Newton's step (size,)."""
-        free, mend = balance.free, balance.mend
-        return mend - free @ np.linalg.solve(free.T @ balance.K @ free, free.T @ (balance.r + balance.K @ mend))
+        def step(resistance: float) -> np.ndarray:
+            return mend - free @ damped_step(free.T @ K @ free, free.T @ (r + K @ mend), resistance)
 
-    def _move(self, step: np.ndarray) -> None:
-        """Move the state by a step, shortened if it would close the gap of a film."""
+        state = system.q, unbalance, scale, step, films or []
+        return ForceBalance(*state, r, K, r_u, free, mend, multipliers, torques, rounding)
+
+    def step(self, state: ForceBalance, resistance: float) -> np.ndarray:
+        """Newton's step, shortened if it would close the gap of a film."""
+        self.system.q = state.x
+        return self._within(state.newton_step(resistance))
+
+    def _within(self, step: np.ndarray) -> np.ndarray:
+        """Part of a step from the present coordinates for which all films have room."""
         self._update()
-        self.system.q = self.system.moved(min(film.room(step) for film in self.films) * step)
+        return min(film.room(step) for film in self.films) * step
 
-    def _newton(self) -> list[tuple[Evaluation, np.ndarray]] | None:
+    def moved(self, state: ForceBalance, step: np.ndarray) -> ForceBalance | None:
+        """Balance after a step, with multipliers and torques that balance the state before it."""
+        self.system.q, self.system.multipliers, self.torques = state.x, state.multipliers, state.torques
+        self.system.q = self.system.moved(step)
+        return self._state()
+
+    def is_balanced(self, state: ForceBalance, tolerance: float) -> bool:
+        """Return whether the forces are balanced and the constraints satisfied."""
+        balanced = state.residual <= max(tolerance, state.rounding) * state.size
+        return balanced and float(np.abs(state.mend).max()) < tolerance * self.length
+
+    def _newton(self) -> list[FilmTangent] | None:
         """Films and tangents of an equilibrium; None if none was found."""
-        system = self.system
-        for _ in range(SETTLING_STEPS):
-            if (films := self._films()) is None:
-                return None
-            balance = self._balance([(e.wrench, tangent) for e, tangent in films])
-            settled = balance.residual < max(TOLERANCE, balance.rounding)
-            if settled and np.abs(balance.mend).max() < TOLERANCE * self.length:
-                return films
-            count = system.multipliers.size
-            system.multipliers = system.multipliers + balance.multipliers[:count]
-            self.torques = balance.multipliers[count:]
-            try:
-                self._move(self._step(balance))
-            except np.linalg.LinAlgError:
-                return None
-        return None
+        found = None if (start := self._state()) is None else self.search(start)
+        return found.film if found is not None and self.is_balanced(found, self.tolerance) else None
 
     def _lost(self, speed: float) -> FilmError:
         """Return the error of a search without equilibrium, with the state of the films at its end."""

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.linalg import block_diag, eig
 
-from exudyn_ehd.coupling.rotor.solve import TOLERANCE
-from exudyn_ehd.joint.bore.equilibrium import SETTLING_STEPS
+from exudyn_ehd.joint.newton import ROUNDED, ROUNDS
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.status import SMALL
 
@@ -77,13 +76,14 @@ def _refined(
 ) -> tuple[complex, np.ndarray | None]:
     """Motion with the whole dynamic stiffness T(s), by Newton's method for ``T(s) y = 0`` at a fixed component of y.
 
-    The vector is None if the guess is not near a motion, or the method does not converge.
+    The vector is None if the guess is not near a motion, or the method does not converge. Steps are not damped, since a
+    guess that needs damping is near another motion than its own.
     """
 
     def terms(s: complex) -> np.ndarray:
         return np.array([s**2 * M, s * D, K, *(film.beyond(s) for film in films)])
 
-    for _ in range(SETTLING_STEPS):
+    for _ in range(ROUNDS):
         if abs(s.imag) < SMALL * abs(s):
             # round-off of a motion without oscillation
             s, y = complex(s.real), (y / y[np.argmax(np.abs(y))]).real.astype(complex)
@@ -91,9 +91,9 @@ def _refined(
             T = terms(s)
             forces = T @ y
             error = np.abs(forces.sum(axis=0)).max() / np.abs(forces).max()
-            if not error > TOLERANCE:
+            if not error > ROUNDED:
                 return s, y / np.linalg.norm(y)
-            slope = (terms(s * (1.0 + TOLERANCE)) - T).sum(axis=0) / (TOLERANCE * s)
+            slope = (terms(s * (1.0 + ROUNDED)) - T).sum(axis=0) / (ROUNDED * s)
         except RuntimeError:  # at a motion of the film alone
             break
         try:

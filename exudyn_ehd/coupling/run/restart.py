@@ -20,7 +20,7 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner
-from exudyn_ehd.joint.balance.newton import settled_history
+from exudyn_ehd.joint.balance.steady_film import settled_history
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.spherical.model import SphericalModel

@@ -13,6 +13,7 @@ import math
 import timeit
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import ClassVar
 
 import numpy as np
@@ -34,11 +35,11 @@ from exudyn_ehd.joint.audit.samples import (
     squeeze_share,
 )
 from exudyn_ehd.joint.audit.switches import Switch, two_dimensional
-from exudyn_ehd.joint.balance.newton import FREE_STEP, ROOM, evaluate_at
-from exudyn_ehd.joint.bore.equilibrium import SETTLING_STEPS
+from exudyn_ehd.joint.balance.steady_film import FREE_STEP, ROOM, evaluate_at
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.newton import PATIENCE, DampedNewton, SearchState
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.status import SMALL, FilmError, InputError, Status, require_type
 
@@ -80,6 +81,68 @@ class Change:
             return f"{load}no film found that carries the same load"
         rest = f"minimum film thickness {self.minimum_gap:+.1%}, peak {self.peak_pressure:+.1%}"
         return f"{load}{rest}, loss {self.power_loss:+.1%} at the same load"
+
+
+class LoadedFilm(SearchState[Evaluation | None]):
+    """Film at a position ``x`` of the journal; ``unbalance`` is the wanted force less its own, N."""
+
+    @property
+    def residual(self) -> float:
+        """Largest component of the unbalance, N."""
+        return float(np.abs(self.unbalance).max())
+
+
+class EqualLoadSearch(DampedNewton[LoadedFilm]):
+    """Search for the position at which the film of another bearing has a given force.
+
+    Parameters
+    ----------
+    steady : function
+        Function of a motion that evaluates the steady film.
+    motion : (n,) array
+        Motion at the first position.
+    force : (k,) array
+        N.
+    free_step : float or None
+        Largest step, m; None: 60 % of the minimum film thickness.
+
+    Attributes
+    ----------
+    share : float
+        Size of the force at the first position over the wanted one; nan without a film there.
+    """
+
+    progress = 1.0
+
+    def __init__(
+        self,
+        steady: Callable[[np.ndarray], Evaluation],
+        motion: np.ndarray,
+        force: np.ndarray,
+        free_step: float | None,
+    ) -> None:
+        self.steady, self.motion, self.force, self.free_step, self.share = steady, motion, force, free_step, math.nan
+
+    def moved(self, state: LoadedFilm, step: np.ndarray) -> LoadedFilm | None:
+        """Film after a step."""
+        x, k, size, self.count = state.x + step, self.force.size, state.size, self.count + 1
+        try:
+            film = self.steady(np.concatenate((x, self.motion[k:])))
+        except FilmError:
+            return None
+        if film.status is not Status.CONVERGED:
+            return None
+        left = self.force - film.wrench[:k]
+        if self.count == 1:
+            self.share = float(np.linalg.norm(film.wrench[:k])) / size
+
+        @cache
+        def newton_step(resistance: float) -> np.ndarray:
+            step, *_ = np.linalg.lstsq(film.steady_tangent()[:k, :k], left, rcond=1e-9)
+            longest = self.free_step or ROOM * film.minimum_gap
+            return step * min(1.0, longest / max(float(np.linalg.norm(step)), 1e-300))
+
+        return LoadedFilm(x, left, size, newton_step, film)
 
 
 class Case:
@@ -265,40 +328,18 @@ class Case:
     ) -> tuple[float, Evaluation | None]:
         """Load of another bearing's film at a state over this bearing's load, and its film with the same force.
 
-        Newton's method finds the position; a step is halved until the force is nearer to the wanted one. The load is
-        nan without a film at the first position, the film None if the search fails.
+        The load is nan without a film at the first position, the film None if the search fails.
         """
-        steady, k, b, motion = (
-            self.steady(other, mine),
-            force.size,
-            other.bearing,
-            mine.motion[: other.motion_size].copy(),
-        )
-        is_soft, share = other.flexible or b.contact is not None or b.asperity is not None, math.nan
+        b, motion = other.bearing, mine.motion[: other.motion_size]
+        touches = other.flexible or b.contact is not None or b.asperity is not None
+        free_step = FREE_STEP * b.radial_clearance if touches else None
+        search = EqualLoadSearch(self.steady(other, mine), motion, force, free_step)
+        search.tolerance = self.tolerance
         # the first step goes from the centre to the state's position; halved steps reach a film between both
-        place, step, error = np.zeros(k), motion[:k].copy(), math.inf
-        for count in range(SETTLING_STEPS):
-            motion[:k] = place + step
-            try:
-                reached = steady(motion.copy())
-            except FilmError:
-                reached = None
-            left = np.full(k, math.inf)
-            if reached is not None and reached.status is Status.CONVERGED:
-                left = force - reached.wrench[:k]
-                share = float(np.linalg.norm(reached.wrench[:k])) / size if count == 0 else share
-            if reached is None or not np.abs(left).max() < error:
-                step = 0.5 * step
-                if np.linalg.norm(step) < SMALL * b.radial_clearance:
-                    break
-                continue
-            place, error = motion[:k].copy(), float(np.abs(left).max())
-            if error <= self.tolerance * size:
-                return share, reached
-            step, *_ = np.linalg.lstsq(reached.steady_tangent()[:k, :k], left, rcond=1e-9)
-            longest = FREE_STEP * b.radial_clearance if is_soft else ROOM * reached.minimum_gap
-            step *= min(1.0, longest / max(float(np.linalg.norm(step)), 1e-300))
-        return share, None
+        k, unknown = force.size, np.full_like(force, math.inf)
+        centre = LoadedFilm(np.zeros(k), unknown, size, lambda resistance: motion[:k], None)
+        found = search.search(centre, rounds=3 * PATIENCE)
+        return search.share, found.film if search.is_balanced(found, self.tolerance) else None
 
     def time_share(self, switch: Switch) -> float | None:
         """Share of the computing time, evaluations with tangent, that is saved by a switch which removes an effect.

@@ -2,7 +2,7 @@
 
 Module map
 ----------
-newton    one damped Newton's method for position and temperature; film at a motion
-position  journal's position under a load
-limits    temperatures and pressures beyond which a film causes a warning; advice for films without a solution
+steady_film  search for temperature and position of a steady film; film at a motion
+position     journal's position under a load
+limits       temperatures and pressures beyond which a film causes a warning; advice for films without a solution
 """

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -12,21 +11,12 @@ import scipy
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief
 from exudyn_ehd.joint.balance.limits import HOTTEST, WAY_OUT, hottest, is_above, too_hot
-from exudyn_ehd.joint.balance.newton import (
-    FREE_STEP,
-    LOAD_TOLERANCE,
-    PATIENCE,
-    ROUNDS,
-    Balance,
-    Place,
-    gaps_of_arcs,
-)
-from exudyn_ehd.joint.bore.equilibrium import HALVINGS, ROUNDED
+from exudyn_ehd.joint.balance.steady_film import FREE_STEP, LOAD_TOLERANCE, Balance, Place, gaps_of_arcs
+from exudyn_ehd.joint.newton import HALVINGS, PATIENCE, ROUNDED, ROUNDS, continued, damped_step
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.status import SMALL, FilmError, InputError, warn_user
 
-# First and smallest step of the continuation from small loads, as shares of the load. Smaller: slower, fails less
-# often.
+# First and shortest step of the continuation from small loads, as shares of the load. Smaller: slower, fails less.
 FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.01
 # Gap over the clearance below which surfaces count as touching: a journal lies on the edge of an arc, says an error
 # message, and errors of time steps are no longer relative to the film. Larger: more often.
@@ -68,10 +58,11 @@ class LoadSearch(Balance):
         found = self.attempt(motion, start)
         if found is None and near is None and self.thermal is not None:
             carried, found = self.climb(motion)
-        places = (lambda: motion, partial(self.loaded, motion, FREE_STEP), partial(self.opposed, motion, start))
-        for place in places[: 2 + self.model.bearing.is_lobed] if carried == 0.0 else ():
-            if found is None:
-                found = self.attempt(place(), start, self.held_back)
+        guesses = [lambda: motion, lambda: self.loaded(motion, FREE_STEP)]
+        if self.model.bearing.is_lobed:
+            guesses.append(lambda: self.opposed(motion, start))
+        for guess in guesses if carried == 0.0 else ():
+            found = found or self.attempt(guess(), start, self.held_back)
         if found is None:
             raise self._not_found(carried * self.size)
         return found
@@ -90,7 +81,7 @@ class LoadSearch(Balance):
             return None
         self.nearest = found
         hot = found.change.size and is_above(HOTTEST, found.temperature)
-        return found if self.is_balanced(found, max(tolerance, ROUNDED)) and not hot else None
+        return found if self.is_balanced(found, max(tolerance, ROUNDED), SMALL) and not hot else None
 
     def loaded(self, motion: np.ndarray, ratio: float) -> np.ndarray:
         """Return the motion with the journal moved along the load, by a ``ratio`` of the way from centre to bore."""
@@ -214,6 +205,7 @@ class LineSearch(LoadSearch):
         back = turning(motion)
         place.motion[:2], place.unbalance = motion[:2], self.share * self.load + back @ force
         place.slope = back @ np.column_stack((place.slope[:, 0], (-y, x))) @ back.T
+        place.x, place.newton_step = motion[:2], partial(damped_step, -place.slope, place.unbalance)
         return place
 
 
@@ -242,36 +234,6 @@ def turning(motion: np.ndarray) -> np.ndarray:
     angle = math.atan2(motion[1], motion[0])
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s], [s, c]])
-
-
-def continued(
-    reach: Callable[[float, Place | None, bool], Place | None], step: float, shortest: float
-) -> tuple[float, Place | None]:
-    """Follow films over a parameter from 0 to 1; a step is halved if it leads to no film.
-
-    Parameters
-    ----------
-    reach : function
-        Function of the parameter, of the last film (None at first), and of a flag for the shortest step; it returns the
-        film there, or None.
-    step, shortest : float
-        First and shortest step.
-
-    Returns
-    -------
-    parameter, film
-        Last parameter reached, with its film; 0 and None if no film was found.
-    """
-    at, here = 0.0, None
-    while at < 1.0:
-        target = min(1.0, at + step)
-        if (there := reach(target, here, step <= shortest)) is not None:
-            at, here = target, there
-        elif step <= shortest:
-            break
-        else:
-            step = max(0.5 * step, shortest)
-    return at, here
 
 
 def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:

@@ -10,35 +10,34 @@ A bore with thin parts that the film bends or tilts, such as tongues and pads, h
 may jump between them or fail. If it does not converge by full steps, the equilibrium is defined by a slow motion: that
 of a viscous bore, ``K (q + tau dq/dt) = Q(q)``, from the undeformed state to rest. The motion is integrated by backward
 Euler (pseudo-transient continuation). tau over the step h grows if a step fails and falls if it succeeds. Newton's
-method starts from the state at which the motion has nearly come to rest.
+method starts from the state at which the motion has nearly come to rest. The steps of this motion decide which of
+several equilibria is found, so that they have rules of their own and every one is solved by `DampedNewton`.
 """
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
 from exudyn_ehd.joint.bore.shapes import Bore
+from exudyn_ehd.joint.newton import (
+    HALVINGS,
+    MOST_FILMS,
+    PATIENCE,
+    ROUNDED,
+    ROUNDS,
+    DampedNewton,
+    SearchState,
+    continued,
+)
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
 from exudyn_ehd.status import ROUNDING, Status
 
-# Continuation to the prescribed position: smallest step, below which it fails, and growth of the step after a success.
-# Smaller, and nearer to 1: slower, fails less often.
-SMALLEST_PART, LONGER = 1e-4, 1.5
-# Largest number of Newton's steps: for an equilibrium, and for a step of a viscous bore. Larger: hopeless searches take
-# longer.
-SETTLING_STEPS, MOVING_STEPS = 60, 10
-# Tolerance of searches for steady states: residual over the load, change of a temperature over the film's rise. Larger:
-# fewer films, less accurate states. A residual that round-off keeps from falling is accepted up to `ROUNDED`.
-SETTLED, ROUNDED = 1e-11, 1e-8
-# Largest number of halvings of a step. Larger: a hopeless search takes longer.
-HALVINGS = 12
 # Pseudo-transient continuation of a viscous bore: tau / h at its start; relative change of q in a step from which on
 # Newton's method is tried. It fails at a step h of less than `ROUNDING` times tau.
 SLOWEST, NEAR = 10.0, 0.02
-# Largest number of film solves of a whole search. Larger: a hopeless search takes longer.
-MOST_FILMS = 6000
 
 
 class Elasticity:
@@ -119,16 +118,17 @@ class NodalEvaluation(BoreEvaluation, Protocol):
         """d wrench / d motion (6, 10 + 2 k), and that of `forces_at` (nodes, 3, 10 + 2 k)."""
 
 
-Result = TypeVar("Result", bound=BoreEvaluation, covariant=True)
+Result = TypeVar("Result", bound=BoreEvaluation)
+Found = TypeVar("Found", bound=BoreEvaluation, covariant=True)
 
 
-class FilmOnBore(Protocol[Result]):
+class FilmOnBore(Protocol[Found]):
     """A bearing model whose bore has coordinates, with the elasticity that resists them."""
 
     bore: Bore
     elasticity: Elasticity
 
-    def evaluate(self, motion: np.ndarray, history: History | None, step: float, spin: float) -> Result:
+    def evaluate(self, motion: np.ndarray, history: History | None, step: float, spin: float) -> Found:
         """The film at a motion (10 + 2 k,)."""
 
 
@@ -147,91 +147,101 @@ def bore_equilibrium(
     undeformed bore. Returns the evaluation or None, and the largest fraction of eccentricity and tilt with an
     equilibrium, with its coordinates (k,).
     """
-    newton = Newton(model, motion, film)
-    found = newton.solve(start, 1.0, straight=True) if start.any() else None
-    reached, part, q, rate = 0.0, 1.0, np.zeros_like(start), np.zeros_like(start)
-    while found is None and part > SMALLEST_PART and newton.trials < MOST_FILMS:
-        target = min(1.0, reached + part)
-        near = newton.settle(q + (target - reached) * rate, target)
-        if near is None:
-            part *= 0.5
-        elif target == 1.0:
-            found = near
-        else:
+    search = BoreSearch(model, motion, film)
+    if start.any() and (found := search.find(start, 1.0, straight=True)) is not None:
+        return found, (0.0, np.zeros_like(start))
+    reached, q, rate = 0.0, np.zeros_like(start), np.zeros_like(start)
+
+    def reach(target: float, here: Result | None, final: bool) -> Result | None:
+        nonlocal reached, q, rate
+        near = search.settle(q + (target - reached) * rate, target)
+        if near is not None and target < 1.0:
             rate = (near.bore.coordinates - q) / (target - reached)
-            reached, q, part = target, near.bore.coordinates.copy(), LONGER * part
-    return found, (reached, q)
+            reached, q = target, near.bore.coordinates.copy()
+        return near
+
+    part, near = continued(reach)
+    return near if part == 1.0 else None, (reached, q)
 
 
-class Newton(Generic[Result]):
-    """Newton's method on q; steps are halved until the gap stays open and the residual falls."""
+class BoreSearch(DampedNewton[SearchState[Result]], Generic[Result]):
+    """Damped Newton's method for the coordinates of a bore.
+
+    The residual may double in a step, since the steps of a bore that opens its film end before the solution.
+
+    Parameters
+    ----------
+    model : FilmOnBore
+    motion : (10,) array
+    film : tuple
+        History, step and spin as for `BearingModel.evaluate`.
+
+    Attributes
+    ----------
+    slowness, anchor : float, (k,) array
+        s = tau / h of a step of a viscous bore, and the coordinates before it; s = 0 for an equilibrium.
+    """
+
+    growth = 2.0
 
     def __init__(
         self, model: FilmOnBore[Result], motion: np.ndarray, film: tuple[History | None, float, float]
     ) -> None:
         self.model, self.motion, self.film = model, motion, film
-        self.trials = 0
 
     def settle(self, q: np.ndarray, part: float) -> Result | None:
         """Find the balance by full Newton steps from q; else by the motion of a viscous bore; else by halved steps."""
-        found = self.solve(q, part, straight=True)
-        if found is None:
-            found = self._come_to_rest(q, part) or self.solve(q, part)
-        return found
+        return self.find(q, part, straight=True) or self._come_to_rest(q, part) or self.find(q, part)
 
     def _come_to_rest(self, q: np.ndarray, part: float) -> Result | None:
         slowness = SLOWEST
-        while slowness * ROUNDING < 1.0 and self.trials < MOST_FILMS:
-            near = self.solve(q, part, slowness)
+        while slowness * ROUNDING < 1.0 and self.count < MOST_FILMS:
+            near = self.find(q, part, slowness)
             if near is None:
                 slowness *= 4.0
                 continue
             new = near.bore.coordinates.copy()
             moved, size = np.linalg.norm(new - q), np.linalg.norm(new)
-            found = self.solve(new, part) if moved <= NEAR * size else None
+            found = self.find(new, part) if moved <= NEAR * size else None
             if found is not None and np.linalg.norm(found.bore.coordinates - new) <= 5.0 * NEAR * size:
                 return found
             q, slowness = new, slowness / 3.0
         return None
 
-    def solve(self, q: np.ndarray, part: float, slowness: float = 0.0, straight: bool = False) -> Result | None:
+    def find(self, q: np.ndarray, part: float, slowness: float = 0.0, straight: bool = False) -> Result | None:
         """Return the equilibrium found from coordinates q (k,) with the pose scaled by ``part``; None without one.
 
         ``straight``: None also if a step has to be halved. With a ``slowness`` s = tau / h, the result is the state q'
         of a viscous bore after one step: ``K (q' + s (q' - q)) = Q(q')``.
         """
-        model, elasticity, k, old, held = self.model, self.model.elasticity, q.size, q, 1.0 + slowness
-        full = np.concatenate((self.motion[:MOTION_SIZE], q, np.zeros(k)))
-        full[:4] *= part
-        evaluation = model.evaluate(full, *self.film)
-        if evaluation.status is not Status.CONVERGED:
+        self.part, self.slowness, self.anchor = part, slowness, q
+        if (start := self.at(q)) is None:
             return None
-        scale = max(float(np.linalg.norm(evaluation.bore.load)), 1e-300)
-        residual = evaluation.bore.load + elasticity.load - elasticity.force(q)
-        error, last = float(np.linalg.norm(residual)), np.inf
-        for _ in range(MOVING_STEPS if slowness else SETTLING_STEPS):
-            # stop at the tolerance, or if round-off keeps a converged residual from falling
-            if error <= SETTLED * scale or (error <= ROUNDED * scale and error > 0.5 * last):
-                return evaluation
+        rounds, halvings = PATIENCE if slowness else ROUNDS, 0 if straight else HALVINGS
+        found = self.search(start, rounds=rounds, halvings=halvings)
+        return found.film if self.is_balanced(found, ROUNDED) else None
+
+    def at(self, q: np.ndarray) -> SearchState[Result] | None:
+        """Return the film at coordinates q (k,); None without one, or after too many films."""
+        self.count += 1
+        motion, force = np.concatenate((self.motion[:MOTION_SIZE], q, np.zeros_like(q))), self.model.elasticity.force
+        motion[:4] *= self.part
+        evaluation = self.model.evaluate(motion, *self.film)
+        if evaluation.status is not Status.CONVERGED or self.count > MOST_FILMS:
+            return None
+        stiffening, load, elasticity = 1.0 + self.slowness, evaluation.bore.load, self.model.elasticity
+        unbalance = load + elasticity.load - stiffening * force(q) + self.slowness * force(self.anchor)
+
+        @cache
+        def step(resistance: float) -> np.ndarray:
             softening = evaluation.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
-            step = elasticity.solve(softening / held, residual / held)
-            last = error
-            for _ in range(1 if straight else HALVINGS):
-                full[MOTION_SIZE : MOTION_SIZE + k] = q + step
-                evaluation = model.evaluate(full, *self.film)
-                self.trials += 1
-                if evaluation.status is Status.CONVERGED:
-                    resisted = elasticity.force(q + step) + elasticity.force(q + step - old) * slowness
-                    residual = evaluation.bore.load + elasticity.load - resisted
-                    error = float(np.linalg.norm(residual))
-                    if error < 2.0 * last or error <= ROUNDED * scale:
-                        break
-                step = 0.5 * step
-            else:
-                return None
-            q = q + step
-            scale = max(scale, float(np.linalg.norm(evaluation.bore.load)))
-        return None
+            return elasticity.solve(softening / stiffening, unbalance / stiffening)
+
+        return SearchState(q, unbalance, float(np.linalg.norm(load)), step, evaluation)
+
+    def moved(self, state: SearchState[Result], step: np.ndarray) -> SearchState[Result] | None:
+        """Film after a step."""
+        return self.at(state.x + step)
 
 
 def condensed_tangent(tangent: np.ndarray, elasticity: Elasticity) -> np.ndarray:

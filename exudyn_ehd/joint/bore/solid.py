@@ -19,17 +19,8 @@ from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import SuperLU
 
 from exudyn_ehd.film.banded.substitution import TILE
-from exudyn_ehd.joint.bore.equilibrium import (
-    HALVINGS,
-    ROUNDED,
-    SETTLED,
-    SETTLING_STEPS,
-    SMALLEST_PART,
-    Elasticity,
-    FilmOnBore,
-    Newton,
-    NodalEvaluation,
-)
+from exudyn_ehd.joint.bore.equilibrium import BoreSearch, Elasticity, FilmOnBore, NodalEvaluation
+from exudyn_ehd.joint.newton import HALVINGS, PATIENCE, ROUNDED, SETTLED, continued
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.solid.total_lagrange import TotalLagrange, sparse_factor
 from exudyn_ehd.status import SMALL, Status
@@ -120,20 +111,19 @@ class SolidElasticity(Elasticity):
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
     ) -> NodalEvaluation | None:
         """Find the balance directly, else by continuation of the pose from that of the present displacements."""
-        reached, part = 0.0, 1.0
         between = motion.copy()
-        while part > SMALLEST_PART and self._linearised < SETTLING_STEPS:
-            target, before = min(1.0, reached + part), self.displacements
-            between[:4] = (1.0 - target) * self._pose + target * motion[:4]
-            near = self._balance(model, between, film, start)
-            if near is None:
+
+        def reach(share: float, here: NodalEvaluation | None, final: bool) -> NodalEvaluation | None:
+            if self._linearised >= 3 * PATIENCE:
+                return None
+            between[:4] = (1.0 - share) * self._pose + share * motion[:4]
+            before, q = self.displacements, start if here is None else here.bore.coordinates.copy()
+            if (near := self._balance(model, between, film, q)) is None:
                 self._return(before)
-                part *= 0.5
-            elif target == 1.0:
-                return near
-            else:
-                reached, start = target, near.bore.coordinates.copy()
-        return None
+            return near
+
+        share, found = continued(reach)
+        return found if share == 1.0 else None
 
     def _balance(
         self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: FilmInput, start: np.ndarray
@@ -150,7 +140,7 @@ class SolidElasticity(Elasticity):
                     if balanced is not None:
                         self.failure = self.solid.inversion(self.displacements)
                         return None if self.failure else balanced
-                if self._linearised >= SETTLING_STEPS:
+                if self._linearised >= 3 * PATIENCE:
                     break
                 self._renew()
                 start = self._coordinates(self.displacements)
@@ -169,7 +159,7 @@ class SolidElasticity(Elasticity):
         """
         if not self.displacements.any():
             return super().settle(model, motion, film, start)
-        return Newton(model, motion, film).solve(start, 1.0, straight=True)
+        return BoreSearch(model, motion, film).find(start, 1.0, straight=True)
 
     def _follow(self, evaluation: NodalEvaluation) -> bool:
         """Move the linear solid under the film's loads; return whether the full step was made.
@@ -192,13 +182,16 @@ class SolidElasticity(Elasticity):
     def _correct(
         self, model: FilmOnBore[NodalEvaluation], film: FilmInput, evaluation: NodalEvaluation
     ) -> NodalEvaluation | None:
-        """Find the balance by corrections with the present K and the film's derivative; None if they are slow."""
+        """Find the balance by corrections with the present K and the film's derivative; None if they are slow.
+
+        These are chord steps, which `DampedNewton` does not make: a new K takes far longer than a film.
+        """
         full, k, nodes = evaluation.motion.copy(), self._q_free.size, self.solid.mesh.bore.nodes
         S = evaluation.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
         factor = lu_factor(self.stiffness - S)
         lack, size = self._lack(self.displacements, evaluation)
         error, last = float(np.linalg.norm(lack)), np.inf
-        for _ in range(SETTLING_STEPS):
+        for _ in range(PATIENCE):
             rounded = error <= ROUNDED * size
             if error <= SETTLED * size or (rounded and error > 0.5 * last):
                 return evaluation

@@ -60,7 +60,7 @@ from exudyn_ehd.film.solvers.answers import OilFields
 from exudyn_ehd.film.solvers.film import shear_share
 from exudyn_ehd.film.surfaces.contact import WallContact
 from exudyn_ehd.joint.balance.limits import no_film
-from exudyn_ehd.joint.balance.newton import settled_history
+from exudyn_ehd.joint.balance.steady_film import settled_history
 from exudyn_ehd.joint.heat.temperature import LumpedTemperature
 from exudyn_ehd.joint.model.effects import Effects
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation

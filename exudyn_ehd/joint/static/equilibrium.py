@@ -15,7 +15,6 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
-from exudyn_ehd.joint.balance.newton import Place, evaluate_at
 from exudyn_ehd.joint.balance.position import (
     LineSearch,
     LoadSearch,
@@ -24,10 +23,11 @@ from exudyn_ehd.joint.balance.position import (
     steadiest,
     turning,
 )
-from exudyn_ehd.joint.bore.equilibrium import SETTLED
+from exudyn_ehd.joint.balance.steady_film import Place, evaluate_at
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.results import remembered
 from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.newton import SETTLED
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import (
     FilmResponse,

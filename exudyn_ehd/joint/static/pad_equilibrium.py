@@ -11,7 +11,7 @@ and the journal moves closer to an unloaded pad, no position is found in either 
 least is treated as tipped over for the rest of the search.
 
 Newton's method uses the exact Jacobian with the tilts eliminated, ``K_aa - K_at K_tt^-1 K_ta``. Steps that do not
-reduce the residual are damped after Levenberg and Marquardt as in `exudyn_ehd.joint.balance.newton`.
+reduce the residual are damped after Levenberg and Marquardt as in `exudyn_ehd.joint.balance.steady_film`.
 
 From a position on a single pad the films may push the journal away after a small slow displacement. The search then
 goes on in this direction, until other pads carry too. If it finds nothing, the position is returned with a warning.
@@ -24,17 +24,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from functools import partial
 
 import numpy as np
 
-from exudyn_ehd.joint.balance.newton import FALLS, PATIENCE, ROUNDS
-from exudyn_ehd.joint.bore.equilibrium import SETTLED
+from exudyn_ehd.joint.newton import ROUNDED, ROUNDS, SETTLED, DampedNewton, SearchState, damped_step
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmMemory
 from exudyn_ehd.joint.static.pads import Pad, PadLoads, TiltingPads, open_tilts
 from exudyn_ehd.joint.static.steady import SteadyResult, result_at
 from exudyn_ehd.pictures.records import shown
-from exudyn_ehd.status import ROUNDING, SMALL, FilmError, InputError, require_number, warn_user
+from exudyn_ehd.status import SMALL, FilmError, InputError, require_number, warn_user
 
 WHERE = "equilibrium"
 # Force on a pad, over the load, above which the pad counts as carrying.
@@ -83,7 +82,8 @@ def settled(pad: Pad, journal: np.ndarray, shift: float, tipped: bool) -> PadLoa
 def _between(pad: Pad, journal: np.ndarray, shift: float, ends: tuple[float, float]) -> PadLoads | None:
     """Loads at the tilt, between two tilts, at which the moment falls through zero; None if there is none.
 
-    Newton's method with bisection.
+    Newton's method with bisection, since only a bracket holds the search at a tilt where the moment falls: at the other
+    tilts without a moment the pad is unstable.
     """
     (lower, upper), sense = ends, math.copysign(1.0, pad.speed)
     tilt = 0.5 * (lower + upper)
@@ -102,38 +102,25 @@ def _between(pad: Pad, journal: np.ndarray, shift: float, ends: tuple[float, flo
     return None
 
 
-class Balanced(NamedTuple):
+@dataclass(eq=False)
+class Balanced(SearchState[list[PadLoads]]):
     """A position of the journal with every pad in balance about its pivot.
 
-    Parameters
+    The unknowns ``x`` (2 + k,) are the position of the journal and the shifts of the pads, m; ``unbalance`` are the sum
+    of forces on the journal, with the load, and the forces on the shifts, N; ``film`` are the loads of all pads.
+
+    Attributes
     ----------
-    unknowns : (2 + k,) array
-        Position of the journal and shifts of the pads, m.
-    loads : list of PadLoads
-    unbalance : (2 + k,) array
-        Sum of forces on the journal, with the load, and forces on the shifts, N; zero in balance.
     slope : (2 + k, 2 + k) array
         Minus the derivative of ``unbalance``, N/m.
     """
 
-    unknowns: np.ndarray
-    loads: list[PadLoads]
-    unbalance: np.ndarray
     slope: np.ndarray
-
-    @property
-    def left(self) -> float:
-        """Norm of the unbalance, N."""
-        return float(np.linalg.norm(self.unbalance))
 
     @property
     def carried(self) -> np.ndarray:
         """Sizes of the forces on the journal (n,), N."""
-        return np.array([np.hypot(*here.forces[:2]) for here in self.loads])
-
-    def is_balanced(self, size: float, tolerance: float = ROUNDING) -> bool:
-        """Return whether the unbalance is below a share of a force, N, plus the tolerance of the pads' forces."""
-        return self.left <= tolerance * size + SETTLED * float(self.carried.sum())
+        return np.array([np.hypot(*here.forces[:2]) for here in self.film])
 
     def falls(self) -> np.ndarray | None:
         """Direction in which the films push the journal away after a small slow displacement; None without one."""
@@ -143,7 +130,7 @@ class Balanced(NamedTuple):
         return directions[:, least].real if real[least] < -SMALL * np.abs(stiffness).max() else None
 
 
-class PadSearch:
+class PadSearch(DampedNewton[Balanced]):
     """Search for the position of a journal in tilting pads under a load (2,), N.
 
     Parameters
@@ -160,7 +147,7 @@ class PadSearch:
     """
 
     def __init__(self, bearing: TiltingPads, speed: float, load: np.ndarray, size: float, where: str = WHERE) -> None:
-        self.bearing, self.load, self.size, self.where, self.count = bearing, load, size, where, 0
+        self.bearing, self.load, self.size, self.where = bearing, load, size, where
         self.pads = [Pad(bearing, k, speed) for k in range(bearing.pads)]
         self.moves, self.tipped = bearing.pivot_stiffness is not None, np.zeros(bearing.pads, dtype=bool)
 
@@ -177,7 +164,9 @@ class PadSearch:
             follows = np.outer(K[own, 2], K[2, own]) / K[2, 2] if here.loaded else 0.0
             slope[np.ix_(places, places)] += K[np.ix_(own, own)] - follows
             loads.append(here)
-        return Balanced(unknowns, loads, unbalance, slope)
+        carried = sum(float(np.hypot(*here.forces[:2])) for here in loads)
+        step = partial(damped_step, slope, unbalance)
+        return Balanced(unknowns, unbalance, self.size + carried, step, loads, slope)
 
     def find(self) -> Balanced:
         """Find the position in which the films carry the load; `FilmError` without one."""
@@ -190,15 +179,15 @@ class PadSearch:
             tried = [self.at(np.array([place.real, place.imag, *unmoved])) for place in places]
             # in directions off the load, only positions at which two or more pads carry
             starts = [p for p in tried if p and (k != 1 or np.sum(p.carried > CARRIES * self.size) > 1)]
-            starts.sort(key=lambda place: place.left)
+            starts.sort(key=lambda place: place.residual)
             for start in starts[:MOST_STARTS]:
                 found.append(here := self._descend(start))
-                if here.is_balanced(self.size):
+                if self.is_balanced(here, ROUNDED):
                     return self._stable(here)
             if k and found:
-                here = min(found, key=lambda place: place.left)
+                here = min(found, key=lambda place: place.residual)
                 self.tipped[np.argmin(np.where(self.tipped, math.inf, here.carried))] = True
-        off = min((here.left for here in found), default=math.inf) / self.size
+        off = min((here.residual for here in found), default=math.inf) / self.size
         yields, soft = self.size / (self.bearing.pivot_stiffness or math.inf), ""
         if yields > self.bearing.radial_clearance:
             soft = (
@@ -217,11 +206,11 @@ class PadSearch:
         if (direction := found.falls()) is None:
             return found
         for length in np.outer(STARTS[1:8:2], (1.0, -1.0)).ravel() * self.bearing.radial_clearance:
-            start = self.at(found.unknowns + length * direction)
+            start = self.at(found.x + length * direction)
             here = found if start is None else self._descend(start)
-            if here.is_balanced(self.size) and here.falls() is None:
+            if self.is_balanced(here, ROUNDED) and here.falls() is None:
                 return here
-        x, y = found.unknowns[:2].tolist()
+        x, y = found.x[:2].tolist()
         warn_user(
             f"{self.where}: the journal rests unstably at ({x:.3g}, {y:.3g}) m: after a small displacement the films "
             "push it further away, until other pads carry it; no stable position was found. Give the pads more "
@@ -230,23 +219,21 @@ class PadSearch:
         )
         return found
 
-    def _descend(self, here: Balanced) -> Balanced:
-        """Reduce the unbalance by damped steps until the load is carried or no step makes progress."""
-        first = 10.0 * self.size / self.bearing.radial_clearance
-        resistance, longest, idle = 0.0, 0.5 * self.bearing.machined_clearance, 0
-        while not here.is_balanced(self.size, SETTLED) and idle < PATIENCE:
-            rows = np.vstack((here.slope, resistance * np.eye(here.unknowns.size)))
-            step, *_ = np.linalg.lstsq(rows, np.append(here.unbalance, np.zeros_like(here.unbalance)), rcond=None)
-            step *= min(1.0, longest / max(float(np.abs(step).max()), 1e-300))
-            there = self.at(here.unknowns + step)
-            idle = 0 if there and there.left < FALLS * here.left else idle + 1
-            if there and there.left < here.left:
-                here, resistance = there, resistance / 5.0 if resistance > 1e-6 * first else 0.0
-            elif here.is_balanced(self.size):
-                break
-            else:
-                resistance = max(8.0 * resistance, 1e-3 * first)
-        return here
+    def _descend(self, start: Balanced) -> Balanced:
+        """Search by full steps of Newton's method as long as they reduce the unbalance, then by damped steps."""
+        found = self.search(start, halvings=0)
+        if self.is_balanced(found, ROUNDED):
+            return found
+        return self.search(found, resistance=10.0 * self.size / self.bearing.radial_clearance)
+
+    def step(self, state: Balanced, resistance: float) -> np.ndarray:
+        """Newton's step of at most half of the machined clearance."""
+        step, longest = state.newton_step(resistance), 0.5 * self.bearing.machined_clearance
+        return step * min(1.0, longest / max(float(np.abs(step).max()), 1e-300))
+
+    def moved(self, state: Balanced, step: np.ndarray) -> Balanced | None:
+        """State after a step."""
+        return self.at(state.x + step)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -383,7 +370,7 @@ def pad_equilibrium(
         )
     search = PadSearch(bearing, speed, load, size)
     found = search.find()
-    n, loads = bearing.pads, found.loads
+    n, loads = bearing.pads, found.film
     names = ("x", "y", *(f"tilt {k + 1}" for k in range(n)), *(f"shift {k + 1}" for k in range(n * search.moves)))
     (K, C, M), memories = np.zeros((3, len(names), len(names))), list[FilmMemory]()
     for k, own in enumerate(loads):
@@ -398,14 +385,14 @@ def pad_equilibrium(
             memories.append(memory._replace(**maps))
     pairs = zip(search.pads, loads, strict=True)
     films = tuple(result_at(pad.model, own.motion, WHERE, own.history) for pad, own in pairs)
-    loaded, position = np.array([own.loaded for own in loads]), found.unknowns[:2]
+    loaded, position = np.array([own.loaded for own in loads]), found.x[:2]
     if not loaded.any():
         warn_user(
             f"{WHERE}: no pad is loaded: without load and preload the pads lie at no definite tilt, and stiffness and "
             "damping are about zero; give the pads a preload, or the journal a load.",
             UserWarning,
         )
-    shifts = found.unknowns[2:] if search.moves else np.zeros(n)
+    shifts = found.x[2:] if search.moves else np.zeros(n)
     return TiltingPadResult(
         position=position,
         eccentricity_ratio=float(np.hypot(*position)) / bearing.radial_clearance,

@@ -38,7 +38,7 @@ from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.surfaces.contact import RegularisedWall
-from exudyn_ehd.joint.balance.newton import settled_history
+from exudyn_ehd.joint.balance.steady_film import settled_history
 from exudyn_ehd.joint.model.build import compile_kernels
 from exudyn_ehd.joint.model.effects import collect_effects
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation

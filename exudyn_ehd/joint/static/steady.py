@@ -23,7 +23,7 @@ from exudyn_ehd.joint.balance.limits import (
     warn_of_overload,
     warn_of_starved,
 )
-from exudyn_ehd.joint.balance.newton import evaluate_at, history_at
+from exudyn_ehd.joint.balance.steady_film import evaluate_at, history_at
 from exudyn_ehd.joint.model import results
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import BearingModel

@@ -11,10 +11,11 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.audit.resolution import warn_of_grid
 from exudyn_ehd.joint.balance.limits import outside_table, warn_of_heat
-from exudyn_ehd.joint.balance.newton import Place
-from exudyn_ehd.joint.balance.position import LoadSearch, continued, first_guess
+from exudyn_ehd.joint.balance.position import LoadSearch, first_guess
+from exudyn_ehd.joint.balance.steady_film import Place
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.joint.newton import continued
 from exudyn_ehd.joint.static.steady import require_rest
 from exudyn_ehd.status import ROUNDING, FilmError, InputError, require_number, require_plausible, require_type
 

@@ -23,14 +23,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 
 from exudyn_ehd.film.loads import refined_peak
 from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
 from exudyn_ehd.film.thrust.tilting import TiltingThrustPads
-from exudyn_ehd.joint.balance.newton import LOAD_TOLERANCE, ROOM, ROUNDS
-from exudyn_ehd.joint.bore.equilibrium import HALVINGS
+from exudyn_ehd.joint.balance.steady_film import LOAD_TOLERANCE, ROOM
+from exudyn_ehd.joint.newton import DampedNewton, SearchState
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE
 from exudyn_ehd.pictures.records import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_number
@@ -138,8 +139,10 @@ def axial(pads: TiltingThrustPads, K: np.ndarray, C: np.ndarray, nu: float) -> c
     return complex(pads.pads * Z)
 
 
-class ThrustPadSearch:
-    """Films of a pad at coordinates v under a collar that turns at a speed.
+class ThrustPadSearch(DampedNewton[SearchState[FaceState]]):
+    """Search for the coordinates x = v of a pad under a collar that turns at a speed.
+
+    The unbalance is (ln(F / W), M_x / (F L), M_y / (F L)).
 
     Parameters
     ----------
@@ -150,62 +153,60 @@ class ThrustPadSearch:
         Load of one pad, N.
     """
 
+    tolerance = LOAD_TOLERANCE
+
     def __init__(self, pads: TiltingThrustPads, speed: float, load: float) -> None:
-        self.pads, self.speed, self.load, self.count = pads, speed, load, 0
+        self.pads, self.speed, self.load = pads, speed, load
         self.film = FaceFilm(pads, 1, pads.cavitation, pads.lubricant, (0.0, 0.0), True, pads.turbulence)
         # (zeta, bx, by) by v, and force on the collar and moments on the pad by the wrench
         self.by_v = np.array([[1.0, 0.0, -pads.pivot_radius], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
         self.by_wrench = np.zeros((3, 6))
         self.by_wrench[[0, 1, 2, 2], [2, 3, 4, 2]] = 1.0, -1.0, -1.0, -pads.pivot_radius
 
-    def at(self, v: np.ndarray) -> tuple[FaceState, np.ndarray]:
-        """Return the film and the residuals (3,); they are infinite without a film or without an axial force."""
+    def at(self, v: np.ndarray) -> SearchState[FaceState] | None:
+        """Return the film at coordinates (3,); None without a film or without an axial force."""
         self.count += 1
         motion = np.zeros(FACE_SIZE)
         motion[:3], motion[6] = self.by_v @ (v - [self.pads.pivot_film, 0.0, 0.0]), self.speed
         found = self.film.evaluate(motion)
         if found.status is not Status.CONVERGED or not found.wrench[2] > 0.0:
-            return found, np.full(3, np.inf)
+            return None
         Q = self.by_wrench @ found.wrench
-        return found, np.array([math.log(Q[0] / self.load), *(Q[1:] / (Q[0] * self.pads.outer_radius))])
+        L = self.pads.outer_radius
+        r = np.array([math.log(Q[0] / self.load), *(Q[1:] / (Q[0] * L))])
+
+        @cache
+        def step(resistance: float) -> np.ndarray:
+            rows = -self.matrices()[0] / Q[0]
+            rows[1:] = rows[1:] / L - np.outer(r[1:], rows[0])
+            return np.linalg.solve(rows @ np.column_stack([v, v[0] / L * np.eye(3)[:, 1:]]), -r)
+
+        return SearchState[FaceState](v, r, 1.0, step, found)
 
     def matrices(self) -> tuple[np.ndarray, np.ndarray]:
         """K and C (3, 3) of the last film."""
         tangent = self.by_wrench @ self.film.tangent()
         return -tangent[:, :3] @ self.by_v, -tangent[:, 3:6] @ self.by_v
 
-    def find(self) -> tuple[np.ndarray, FaceState, np.ndarray] | None:
-        """Find coordinates, film and residuals of an equilibrium; None without one.
+    def find(self) -> SearchState[FaceState] | None:
+        """Find an equilibrium; None without one.
 
         Initial guess: a step of the largest size, `ROOM`, has closed the gap at the trailing edge of a parallel pad.
         """
-        pads, L = self.pads, self.pads.outer_radius
+        pads = self.pads
         behind = pads.extent - pads.pivot_angle if self.speed > 0.0 else pads.pivot_angle
         tilt = math.copysign(ROOM / (pads.pivot_radius * math.sin(min(behind, 1.0))), self.speed)
-        v = pads.pivot_film * np.array([1.0, tilt, 0.0])
-        found, r = self.at(v)
-        for _ in range(ROUNDS):
-            if not np.isfinite(r[0]):
-                return None
-            if np.abs(r).max() < LOAD_TOLERANCE:
-                # a gap that is even would carry by vanishing, not by a wedge
-                wedge = np.ptp(self.film.gap) / self.film.gap.min()
-                return (v, found, r) if wedge > SMALLEST_GAP_SHARE else None
-            rows = -self.matrices()[0] / (self.load * math.exp(r[0]))
-            rows[1:] = rows[1:] / L - np.outer(r[1:], rows[0])
-            step = np.linalg.solve(rows @ np.column_stack([v, v[0] / L * np.eye(3)[:, 1:]]), -r)
-            v, found, r = self._shorter(v, r, step)
-        return None
+        if (start := self.at(pads.pivot_film * np.array([1.0, tilt, 0.0]))) is None:
+            return None
+        found, gap = self.search(start), self.film.gap
+        # a gap that is even would carry by vanishing, not by a wedge
+        carries = self.is_balanced(found, self.tolerance) and np.ptp(gap) / gap.min() > SMALLEST_GAP_SHARE
+        return found if carries else None
 
-    def _shorter(self, v: np.ndarray, r: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, FaceState, np.ndarray]:
-        """Take the step, halved until it reduces the residuals; the residuals are infinite if no part does."""
-        for part in 0.5 ** np.arange(HALVINGS):
-            h = v[0] * math.exp(float(np.clip(part * step[0], -2.0, 2.0)))
-            there = h * np.array([1.0, *(v[1:] / v[0] + part * step[1:] / self.pads.outer_radius)])
-            found, now = self.at(there)
-            if np.linalg.norm(now) < np.linalg.norm(r):
-                return there, found, now
-        return v, found, np.full(3, np.inf)
+    def moved(self, state: SearchState[FaceState], step: np.ndarray) -> SearchState[FaceState] | None:
+        """Film after a step, which changes the film thickness by a factor of e^2 at most."""
+        h, v = state.x[0] * math.exp(float(np.clip(step[0], -2.0, 2.0))), state.x
+        return self.at(h * np.array([1.0, *(v[1:] / v[0] + step[1:] / self.pads.outer_radius)]))
 
 
 def equilibrium_of_pads(
@@ -222,9 +223,9 @@ def equilibrium_of_pads(
         )
     carried = require_number(f"{WHERE}: load", load, "N", above=0.0, hint=ALONG)  # type: ignore[arg-type]
     search = ThrustPadSearch(pads, speed, carried / pads.pads)
-    place = search.find()
-    if place is not None and np.linalg.eigvals(search.matrices()[0][1:, 1:]).real.min() > 0.0:
-        return _result(search, *place)
+    found = search.find()
+    if found is not None and np.linalg.eigvals(search.matrices()[0][1:, 1:]).real.min() > 0.0:
+        return _result(search, found)
     raise FilmError(
         f"{WHERE}: no film was found in which TiltingThrustPads carry {carried:.4g} N at {speed:.4g} rad/s with their "
         f"pivot {pads.pivot_angle / pads.extent:.3g} of the extent behind the leading edge of a positive spin: plane "
@@ -234,8 +235,8 @@ def equilibrium_of_pads(
     )
 
 
-def _result(search: ThrustPadSearch, v: np.ndarray, found: FaceState, r: np.ndarray) -> ThrustPadsResult:
-    """Result at coordinates of an equilibrium, whose film is the model's last."""
+def _result(search: ThrustPadSearch, found: SearchState[FaceState]) -> ThrustPadsResult:
+    """Result at an equilibrium, whose film is the model's last."""
     pads, film, nu = search.pads, search.film, abs(search.speed)
     K, C = search.matrices()
     Z, grid, a = axial(pads, K, C, nu), film.annulus.grid, film.annulus
@@ -245,20 +246,20 @@ def _result(search: ThrustPadSearch, v: np.ndarray, found: FaceState, r: np.ndar
     flows[int(search.speed > 0.0)] -= flows.sum()
     peak, _, _ = refined_peak(film.fields.P, grid.fixed, grid.x, grid.link_x, grid.z)
     return ThrustPadsResult(
-        film_thickness=float(v[0]),
-        inclination=np.array([v[2], -v[1]]),
-        minimum_gap=found.minimum_gap,
+        film_thickness=float(found.x[0]),
+        inclination=np.array([found.x[2], -found.x[1]]),
+        minimum_gap=found.film.minimum_gap,
         maximum_gap=float(film.gap.max()),
         peak_pressure=film.scales.pressure * peak,
-        power_loss=pads.pads * found.power_loss,
-        friction_torque=-pads.pads * found.power_loss / search.speed,
+        power_loss=pads.pads * found.film.power_loss,
+        friction_torque=-pads.pads * found.film.power_loss / search.speed,
         flows=pads.pads * flows,
         stiffness=Z.real,
         damping=Z.imag / nu,
         frequency=nu,
         pad_stiffness=K,
         pad_damping=C,
-        residual=float(np.abs(r).max()),
+        residual=float(np.abs(found.unbalance).max()),
         iterations=search.count,
         theta=grid.x,
         r=a.scale * a.r,

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.balance.newton import Balance
-from exudyn_ehd.joint.balance.position import continued
+from exudyn_ehd.joint.balance.steady_film import Balance
 from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.newton import continued
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.thrust import ThrustModel
 

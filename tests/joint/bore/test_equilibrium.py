@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.balance.newton import evaluate_at
-from exudyn_ehd.joint.bore.equilibrium import Newton
+from exudyn_ehd.joint.balance.steady_film import evaluate_at
+from exudyn_ehd.joint.bore.equilibrium import BoreSearch
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.mesh import BushMesh, boundary_faces, surface_of
 
@@ -90,10 +90,10 @@ def test_the_film_on_a_tongue_is_the_one_reached_from_the_undeformed_bore():
     for model, motion in tongues(1, 8, ((4e-4, 8), (1e-3, 6))):
         evaluation = model.evaluate_steady(motion)
         found, load = evaluation.bore.coordinates.copy(), evaluation.bore.load
-        q, newton = np.zeros_like(found), Newton(model, motion, (None, 0.0, 0.0))
+        q, search = np.zeros_like(found), BoreSearch(model, motion, (None, 0.0, 0.0))
         part = min(1.0, 0.9 * C / float(np.hypot(*motion[:2])))
         for step in range(150):
-            ways = (newton.solve(q, min(1.0, part + 0.01 * step), slowness=s) for s in (10.0, 100.0, 1e3, 1e4))
+            ways = (search.find(q, min(1.0, part + 0.01 * step), slowness=s) for s in (10.0, 100.0, 1e3, 1e4))
             q = next(near for near in ways if near is not None).bore.coordinates.copy()
         if np.linalg.norm(q - found) > 1e-3 * np.linalg.norm(found):
             others += 1

@@ -8,7 +8,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.heat.energy import end_flows_around, pass_on, transport_slopes
-from exudyn_ehd.joint.balance.newton import settled_history
+from exudyn_ehd.joint.balance.steady_film import settled_history
 from exudyn_ehd.joint.heat.power import OilFlows, heat_and_exchange, heat_of
 from exudyn_ehd.joint.model.build import build_model, build_study_model
 from exudyn_ehd.joint.model.results import supply_flows

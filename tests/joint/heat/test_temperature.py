@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.balance.newton import settled_history
+from exudyn_ehd.joint.balance.steady_film import settled_history
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.solved_film import History
 from tests.sampling import covering, sample

@@ -11,7 +11,7 @@ from scipy.optimize import root
 from scipy.special import i0, i1
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.balance.newton import settled_history
+from exudyn_ehd.joint.balance.steady_film import settled_history
 from exudyn_ehd.joint.model.build import build_model
 from tests.sampling import sample
 

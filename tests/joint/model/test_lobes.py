@@ -11,7 +11,7 @@ import pytest
 from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.balance.newton import settled_history
+from exudyn_ehd.joint.balance.steady_film import settled_history
 from exudyn_ehd.joint.heat.power import OilFlows
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.pictures.files import film_mesh

@@ -1,21 +1,14 @@
-"""Damped Newton's method for steady films, which finds the journal's position under a load and the temperature.
+"""Steady film in balance with its heat and, under a load, the position of the journal.
 
 The unknowns are the free coordinates x of the journal and the temperature T. F is the force of the films, W the load,
 and T* the temperature in balance with the heat of the film at x and T:
 
     F(x, T) + W = 0,    T*(x, T) - T = 0.
 
-A round solves one film, with a flexible bore in balance with it. It makes Newton's step in x, and the step from T to
-T*. For Newton's step, the forces are multiplied by the ratio of the mean viscosities at T* and at T. Near the
-solution Anderson's acceleration of both steps accounts for the coupling of x and T. With a resistance r, N/m, the step
-in x is damped after Levenberg (1944) and Marquardt (1963): with K = -dF/dx
-
-    (K^T K + r^2 I) step = K^T (F + W)
-
-reduces |F + W|^2 for r large enough, whatever K. After a step that reduces |F + W|, r is made smaller. A step that
-increases it is rejected and r is made larger. Damped steps are slow but reliable where Newton's method jumps over a
-film that starves or touches, and where a film without a cavity moves the journal across the load. Without a resistance,
-a step that leads to no film is halved.
+`DampedNewton` searches for x. A round solves one film, with a flexible bore in balance with it, and makes the step from
+T to T* beside Newton's step in x. For Newton's step, the forces are multiplied by the ratio of the mean viscosities at
+T* and at T. The derivative of T* is not known. So, near the solution, Anderson's acceleration of both steps together
+accounts for it and for the coupling of x and T.
 
 A search for a temperature field begins with a transport along theta of first order. The limiter of the second order
 depends on the temperature itself and leads searches from a cold film astray. It is used as soon as the search is near.
@@ -29,13 +22,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.linalg import norm
 
 from exudyn_ehd.joint.balance.limits import NO_OIL, WAY_OUT, no_film, require_bearable, require_oil_bears
-from exudyn_ehd.joint.bore.equilibrium import HALVINGS, MOST_FILMS, SETTLED
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.newton import (
+    HALVINGS,
+    MOST_FILMS,
+    ROUNDS,
+    SETTLED,
+    Acceleration,
+    DampedNewton,
+    SearchState,
+    damped_step,
+)
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, SolvedFilm
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, seen_by_faces
 from exudyn_ehd.joint.time_step import part_that_closes
@@ -44,10 +47,6 @@ from exudyn_ehd.status import SMALL, FilmError, Status
 # Tolerance of the unbalance, as a share of the load; `ROUNDED` at the end of a slow search. A temperature's change, as
 # a share of the film's rise over its coldest source, has the tolerance `SETTLED`; `SMALL` at the end of a slow search.
 LOAD_TOLERANCE = 1e-10
-# Largest number of rounds of a search; number of rounds from a film nearby, of rounds in a row whose error does not
-# fall below `FALLS` times the smallest error, and of past rounds that Anderson's acceleration combines. Larger: a
-# hopeless search gives up later; smaller: slow ones fail.
-ROUNDS, PATIENCE, FALLS = 300, 20, 0.9
 # Damping factor of steps below which a search without progress gives up. Smaller: hopeless searches take longer.
 WEAKEST = 0.02
 # Changes of the temperature in K: the largest one in a round, of the same scaled size as a move by the clearance;
@@ -62,8 +61,8 @@ ROOM, FREE_STEP = 0.6, 0.3
 
 
 @dataclass(eq=False)
-class Place:
-    """A film of a search.
+class Place(SearchState[SolvedFilm]):
+    """A film of a search; ``x`` are the free coordinates, ``unbalance`` is the force of films and load, N, at T*.
 
     Attributes
     ----------
@@ -71,10 +70,8 @@ class Place:
         Motion of the journal (10,), and its axial position between the end faces, m.
     temperature, change : arrays
         T and T* - T, K, of any shape; ``change`` is empty if no temperature is sought.
-    evaluation, film : Evaluation, SolvedFilm
-        Evaluation and solution of the steady film there.
-    unbalance : (k,) array
-        Force of the films and load at the temperature T*, N.
+    evaluation : Evaluation
+        Evaluation of the steady film there.
     slope : (k, k) array
         Derivative of the unbalance to the free coordinates, N/m.
     faces : ThrustEvaluation or None
@@ -85,18 +82,23 @@ class Place:
     temperature: np.ndarray
     change: np.ndarray
     evaluation: Evaluation
-    film: SolvedFilm
-    unbalance: np.ndarray
     slope: np.ndarray
     faces: ThrustEvaluation | None
+
+    def largest_change(self) -> float:
+        """Largest component of ``change``, K; not 0, so that it may divide."""
+        return float(np.abs(self.change).max(initial=1e-300))
 
     def mean_change(self) -> float:
         """Root mean square of ``change``, K."""
         return float(norm(self.change)) / math.sqrt(max(self.change.size, 1))
 
 
-class Balance:
+class Balance(DampedNewton[Place]):
     """Search for the temperature and, under a load, the position of a model's steady film.
+
+    Without a resistance a step may increase the unbalance: Newton's method converges from the thin side of a film,
+    where the unbalance is larger.
 
     Parameters
     ----------
@@ -117,11 +119,13 @@ class Balance:
     ----------
     share : float
         Share of the load in the present search; below 1 in a continuation from smaller loads.
-    count : int
-        Number of films evaluated.
+    strongest : float, (float, float)
+        Largest force of the film in this search, N, and the eccentricity ratio there.
     rough : bool
         Whether the temperature is transported along theta with first order.
     """
+
+    growth = math.inf
 
     def __init__(
         self,
@@ -141,9 +145,9 @@ class Balance:
         self.thermal = model.effects.thermal if held is None else None
         cold = np.zeros(0) if self.thermal is None else self.thermal.initial_temperature()
         self.cold = np.asarray(cold, dtype=float)
-        self.count, self.first = 0, model.parts.evaluations
-        self.strongest = (0.0, 0.0)
-        self.rough = False
+        self.first, self.strongest, self.rough = model.parts.evaluations, (0.0, 0.0), False
+        self._acceleration = Acceleration()
+        self._before: Place | None = None
 
     def temperature_of(self, near: History | None) -> np.ndarray:
         """Initial guess of the temperature, K: that of the memory ``near``, else that of the thermal option."""
@@ -187,7 +191,9 @@ class Balance:
             slope += beside.tangent()[:k, self.free] if k else 0.0
             if k > 2:  # plane faces at rest have no stiffness: with this one a step goes to the loaded face
                 slope[2, 2] = min(slope[2, 2], -SMALL * self._sizes[2] / self.model.bearing.radial_clearance)
-        return Place(motion.copy(), T, change, evaluation, film, unbalance, slope, beside)
+        motion, step = motion.copy(), partial(damped_step, -slope, unbalance)
+        x, size = motion[self.free], self.size
+        return Place(x, unbalance, size, step, film, motion, T, change, evaluation, slope, beside)
 
     def residual(self, place: Place) -> float:
         """Largest component of the unbalance over the load."""
@@ -200,9 +206,14 @@ class Balance:
         """
         return max(self.residual(place), place.mean_change() / LARGEST_CHANGE)
 
-    def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = SMALL) -> bool:
-        """Return whether the residual is below a tolerance, and the change of the temperature negligible."""
+    def is_balanced(self, place: Place, tolerance: float = LOAD_TOLERANCE, settled: float = SETTLED) -> bool:
+        """Return whether the residual is below a tolerance, and the change of the temperature below ``settled``.
+
+        With a transport of first order, return whether the search is near enough for the second order.
+        """
         T, change = place.temperature, place.change
+        if self.rough:
+            return self.residual(place) < 1.0 and place.mean_change() < ACCELERATED
         if self.residual(place) > tolerance or not change.size:
             return self.residual(place) <= tolerance
         rise = max(float(np.ptp(T + change)), float(np.abs(T - self.cold).max()), 1e-3)
@@ -227,46 +238,28 @@ class Balance:
         FilmError
             If there is no film at the initial guess; under a load, none at smaller eccentricities either.
         """
-        self.rough = self.cold.ndim > 1
-        here = self._first(motion, temperature)
-        past: list[tuple[np.ndarray, np.ndarray]] = []
-        best, smallest, idle, part, damping, highest = here, self.error(here), 0, 1.0, 1.0, 1e12 * resistance
-        for _ in range(rounds):
-            # so near to the end that Anderson's acceleration helps
-            if self.rough and self.residual(here) < 1.0 and here.mean_change() < ACCELERATED:
-                self.rough = False
-                best = here = self.at(here.motion, here.temperature)
-                past, smallest = [], self.error(here)
-            spent = self.model.parts.evaluations - self.first > MOST_FILMS
-            if self.is_balanced(here, tolerance, SETTLED) or spent:
-                break
-            if idle > PATIENCE:
-                if not here.change.size or damping < WEAKEST:
-                    break
-                here, past, idle, damping = best, [], 0, 0.6 * damping
-            step = self._step(here, resistance)
-            unknowns = np.append(here.motion[self.free], here.temperature) / self._scales(here.change.size)
-            past = [*past, (unknowns, step)][-min(PATIENCE, step.size) - 1 :]
-            if not here.change.size or here.mean_change() >= ACCELERATED:
-                past = []
-            accelerated = damping * step - (foreseen(past, damping) if len(past) > 1 else 0.0)
-            try:
-                there = self._moved(here, part * accelerated)
-            except FilmError:
-                there = None
-            if there is None or (resistance and not norm(there.unbalance) < norm(here.unbalance)):
-                past, part, resistance = [], part if resistance else 0.5 * part, 4.0 * resistance
-                if resistance > highest or part < 0.5**HALVINGS:
-                    break
-                continue
-            here, part, resistance = there, 1.0, resistance / 5.0
-            idle = 0 if self.error(here) <= FALLS * smallest else idle + 1
-            if self.error(here) < smallest:
-                best, smallest = here, self.error(here)
-        if self.rough or here.film.serial != self.model.parts.evaluations:
-            self.rough = False
-            here = self.at(here.motion, here.temperature)
-        return here
+        self.rough, self.tolerance = self.cold.ndim > 1, tolerance
+        self._acceleration, self._before = Acceleration(), None
+        found, first = self._first(motion, temperature), self.count
+        if self.rough:
+            found = self.search(found, resistance=resistance, rounds=rounds)
+            is_near, self.rough = self.is_balanced(found), False
+            found = self.at(found.motion, found.temperature)
+            if not is_near:
+                return found
+            self._acceleration.restart()
+        found = self.search(found, resistance=resistance, rounds=rounds - self.count + first)
+        if found.film.serial != self.model.parts.evaluations:
+            found = self.at(found.motion, found.temperature)
+        return found
+
+    def resumes(self) -> bool:
+        """Return whether a search for a temperature goes on with smaller steps."""
+        if self.thermal is None or self._acceleration.damping < WEAKEST:
+            return False
+        self._acceleration.restart()
+        self._acceleration.damping *= 0.6
+        return True
 
     def _first(self, motion: np.ndarray, temperature: np.ndarray) -> Place:
         """The film at a motion (11,), or that of a free journal at a smaller eccentricity if there is none."""
@@ -282,62 +275,54 @@ class Balance:
         c = self.model.bearing.radial_clearance
         return np.append(np.full(len(self.free), c), np.full(size, LARGEST_CHANGE * math.sqrt(max(size, 1))))
 
-    def _step(self, place: Place, resistance: float) -> np.ndarray:
-        """Newton's step from a place, damped, and the temperature's change, scaled (k + m,)."""
-        k, size = len(self.free), float(np.abs(place.change).max(initial=1e-300))
-        rows = np.vstack((-place.slope, resistance * np.eye(k)))
-        step, *_ = np.linalg.lstsq(rows, np.append(place.unbalance, np.zeros(k)), rcond=None)
-        return np.append(step, place.change * min(1.0, LARGEST_CHANGE / size)) / self._scales(place.change.size)
+    def step(self, place: Place, resistance: float) -> np.ndarray:
+        """Newton's step from a place and the temperature's change (k + m,), scaled, with Anderson's acceleration."""
+        scales, again, self._before = self._scales(place.change.size), place is self._before, place
+        change = place.change * min(1.0, LARGEST_CHANGE / place.largest_change())
+        step = np.append(place.newton_step(resistance), change) / scales
+        # steps that were rejected or that are long lead to no acceleration
+        if again or place.mean_change() >= ACCELERATED:
+            self._acceleration.restart()
+        if not place.change.size or place.mean_change() >= ACCELERATED:
+            return self._acceleration.damping * step
+        return self._acceleration.step(np.append(place.x, place.temperature) / scales, step)
 
-    def _moved(self, place: Place, step: np.ndarray) -> Place:
-        """Evaluate the film after a scaled step (k + m,) from a place.
+    def moved(self, place: Place, step: np.ndarray) -> Place | None:
+        """Evaluate the film after a scaled step (k + m,) from a place; None without one, or after too many films.
 
         Moves are limited by the gaps, temperature changes to four times the change at the place.
         """
-        k, motion, size = len(self.free), place.motion.copy(), float(np.abs(place.change).max(initial=1e-300))
+        if self.model.parts.evaluations - self.first > MOST_FILMS:
+            return None
+        k, motion, size = len(self.free), place.motion.copy(), place.largest_change()
         step = step * self._scales(place.change.size)
         if k:
-            motion[:2] += limited_step(self.model, motion, step[:2])
+            motion[:2] += room(self.model, motion, np.append(step[:2], (0.0, 0.0))) * step[:2]
         if place.faces is not None and k > 2:
-            motion[MOTION_SIZE] += limited_shift(place.faces, float(step[2]))
+            motion[MOTION_SIZE] += room_of_faces(place.faces, float(step[2])) * step[2]
         change = step[k:].reshape(place.change.shape)
         change = change * min(1.0, 4.0 * size / float(np.abs(change).max(initial=size)))
-        return self.at(motion, place.temperature + change)
+        try:
+            return self.at(motion, place.temperature + change)
+        except FilmError:
+            return None
 
 
-def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float) -> np.ndarray:
-    """Return the part of the next fixed-point step that Anderson's acceleration subtracts.
+def room(model: BearingModel, motion: np.ndarray, change: np.ndarray) -> float:
+    """Largest part of a change (4,) of the pose that closes at most 60 % of the smallest gap of the rigid surfaces.
 
-    Without it the step would be ``damping`` times the iteration's change. ``past``: points (k,) of at least two rounds,
-    with the changes (k,) that the iteration gave there, the newest last.
-    """
-    dX, dF = (np.diff(np.array(values), axis=0).T for values in zip(*past))
-    return (dX + damping * dF) @ np.linalg.lstsq(dF, past[-1][1], rcond=1e-12)[0]
-
-
-def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Shorten a step (2,) so that it closes at most 60 % of the smallest gap of the rigid surfaces.
-
-    Where surfaces may touch or deflect, the step is shortened to 30 % of the clearance instead; in lobed bores to both.
+    Where surfaces may touch or deflect, the journal may move by 30 % of the clearance instead; in lobed bores both
+    limits hold.
     """
     c, touches, lobed = model.bearing.radial_clearance, model.effects.contacts or model.flexible, model.bearing.is_lobed
-    if touches or lobed:
-        step = step * min(1.0, FREE_STEP * c / float(np.hypot(*step) + 1e-300))
+    part = min(1.0, FREE_STEP * c / float(np.hypot(*change[:2]) + 1e-300)) if touches or lobed else 1.0
     if touches:
-        return step
+        return part
     if lobed:
-        return step * room_between_lobes(model, motion, np.append(step, (0.0, 0.0)))
-    after = np.concatenate((motion[:2] + step, motion[2:4]))
-    return step * part_that_closes(ROOM, motion, after, c, model.bearing.length)
-
-
-def room_between_lobes(model: BearingModel, motion: np.ndarray, change: np.ndarray) -> float:
-    """Largest part of a change (4,) of the pose that closes at most 60 % of any gap of a lobed bore.
-
-    In a lobed bore the journal's eccentricity may exceed the clearance.
-    """
-    gaps = gaps_of_arcs(model, motion)
-    return min(1.0, ROOM / max(float((1.0 - gaps_of_arcs(model, motion[:4] + change) / gaps).max()), 1e-300))
+        # in a lobed bore the journal's eccentricity may exceed the clearance
+        closed = 1.0 - gaps_of_arcs(model, motion[:4] + part * change) / gaps_of_arcs(model, motion)
+        return part * min(1.0, ROOM / max(float(closed.max()), 1e-300))
+    return part_that_closes(ROOM, motion, motion[:4] + change, c, model.bearing.length)
 
 
 def gaps_of_arcs(model: BearingModel, motion: np.ndarray) -> np.ndarray:
@@ -347,13 +332,15 @@ def gaps_of_arcs(model: BearingModel, motion: np.ndarray) -> np.ndarray:
     return np.asarray(model.bearing.radial_clearance * (1.0 + (0.0 if lobes is None else lobes.values)) - away)
 
 
-def limited_shift(faces: ThrustEvaluation, step: float) -> float:
-    """Shorten an axial step, m, to 60 % of the smallest gap, or with a contact to 30 % of the clearance."""
+def room_of_faces(faces: ThrustEvaluation, shift: float, slope: float = 0.0) -> float:
+    """Largest part of an axial shift, m, and a change of the tilt, rad, for which the films on end faces have room.
+
+    It closes at most 60 % of the smallest gap, or with a contact 30 % of the clearance.
+    """
     options = faces.model.bearing.thrust
     assert options is not None
-    gap = ROOM * min(state.minimum_gap for state in faces.states)
-    longest = gap if options.contact is None else FREE_STEP * options.clearance
-    return min(max(step, -longest), longest)
+    longest = ROOM * faces.minimum_gap if options.contact is None else FREE_STEP * options.clearance
+    return min(1.0, longest / max(abs(shift) + options.outer_radius * slope, 1e-300))
 
 
 def settled_history(
@@ -386,7 +373,7 @@ def settled_history(
     if balance.thermal is None:
         return None
     found = balance.solve(motion, balance.temperature_of(near))
-    if not balance.is_balanced(found):
+    if not balance.is_balanced(found, settled=SMALL):
         require_oil_bears(found.film.temperature, model.grid, where)
         raise FilmError(
             f"{where}: the film's temperature does not converge, its last change is {np.abs(found.change).max():.3g} "
