@@ -1253,6 +1253,10 @@ film.audit()["heat"]
 ball = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil)
 ehd.steady_spherical(ball, place=(0.0, 0.0, 40e-6))
 
+steep = ehd.Lubricant(viscosity=0.02, pressure_law=ehd.BarusPressure(coefficient=2e-8))
+piezo = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=steep)
+ehd.steady_spherical(piezo, place=(0.0, 0.0, 29e-6), velocity=(0.0, 0.0, 10.0))
+
 warm = ehd.LumpedThermal(supply_temperature=313.15)
 closed = ehd.SphericalBearing(ball_radius=0.015, radial_clearance=30e-6, lubricant=oil, thermal=warm)
 ehd.steady_spherical(closed, place=(0.0, 0.0, 0.0), angular_velocity=(0.0, 0.0, 100.0))

@@ -164,9 +164,11 @@ class PadSearch(DampedNewton[Balanced]):
             follows = np.outer(K[own, 2], K[2, own]) / K[2, 2] if here.loaded else 0.0
             slope[np.ix_(places, places)] += K[np.ix_(own, own)] - follows
             loads.append(here)
-        carried = sum(float(np.hypot(*here.forces[:2])) for here in loads)
-        step = partial(damped_step, slope, unbalance)
-        return Balanced(unknowns, unbalance, self.size + carried, step, loads, slope)
+        return Balanced(unknowns, unbalance, self.size, partial(damped_step, slope, unbalance), loads, slope)
+
+    def is_balanced(self, state: Balanced, tolerance: float) -> bool:
+        """Return whether the unbalance is below a share of the load plus the round-off of the pads' forces."""
+        return state.residual <= tolerance * state.size + SETTLED * float(state.carried.sum())
 
     def find(self) -> Balanced:
         """Find the position in which the films carry the load; `FilmError` without one."""
