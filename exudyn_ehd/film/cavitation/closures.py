@@ -197,8 +197,8 @@ class SwiftStieber(_Ruptures):
     A cavity stays full where its gap widens. ``supply_flows``, and temperatures by `FilmEnergy`, omit the oil that it
     makes there, for grooves along the axis and pockets in the bore that have a given pressure. With one of them within
     30 degrees of the largest gap, over at least 0.6 of the length, nine of ten bearings give, over the numbers of
-    `ElrodAdams`: supply flow 0.7 to 1.1 (few down to 0.3), power loss 1.0 to 1.3, ``oil_flow`` 1.05 to 1.5; rise of the
-    temperature by `FilmEnergy` in the mean 0.7 to 1.0, at its peak 1.0 to 1.2, by `LumpedThermal` 0.9 to 1.1.
+    `ElrodAdams`: supply flow 0.7 to 1.1 (few down to 0.3), power loss 1.0 to 1.3, ``oil_flow`` 1.05 to 1.6; rise of the
+    temperature by `FilmEnergy` in the mean 0.65 to 1.0, at its peak 1.0 to 1.2, by `LumpedThermal` 0.85 to 1.1.
     In front of other supply areas this oil is counted: their flow is too small or even negative, and it cools the film,
     whose rises are down to half of the true ones. Take `ElrodAdams` for them, for two grooves, and for a groove that is
     further from the largest gap.

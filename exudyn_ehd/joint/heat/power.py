@@ -195,13 +195,15 @@ class OilFlows:
         """Return `pass_on` for the walls of grooves and the edges of arcs.
 
         The film in front of a groove is full, up to the groove's pressure, and feeds on what the cavity passes on. A
-        film at higher pressures carries load: it finds the oil that it needs.
+        film at higher pressures carries load and finds the oil that it needs: a vertex passes on the ratio of the
+        largest pressure at the walls to its own. Below 1 % of the largest pressure of the film it passes on all, also
+        in front of grooves without pressure, so that the flows do not jump where a cavity ends at another vertex.
         """
         walls, P = film.parts.grooves, film.solver.pressure
         if film.solver.closure.conserves_mass or not walls.any():
             return np.zeros((2, *P.shape))
-        level = max(float(P[walls > 0.0].max()), 0.0)
-        shares = level / np.maximum(P, level) if level > 0.0 else 1.0 * (P <= 0.0)
+        level = max(float(P[walls > 0.0].max()), 0.01 * float(P.max()), 1e-300)
+        shares = level / np.maximum(P, level)
         return np.asarray(pass_on(self.x, fx, found, shares, walls, film.journal.omega))
 
     def _void_the_ends(self, film: SolvedFilm, stepped: bool) -> None:

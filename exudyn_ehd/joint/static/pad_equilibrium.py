@@ -11,7 +11,7 @@ and the journal moves closer to an unloaded pad, no position is found in either 
 least is treated as tipped over for the rest of the search.
 
 Newton's method uses the exact Jacobian with the tilts eliminated, ``K_aa - K_at K_tt^-1 K_ta``. Steps that do not
-reduce the residual are damped after Levenberg and Marquardt as in `exudyn_ehd.joint.balance.steady_film`.
+reduce the residual are damped after Levenberg and Marquardt (`exudyn_ehd.joint.newton`).
 
 From a position on a single pad the films may push the journal away after a small slow displacement. The search then
 goes on in this direction, until other pads carry too. If it finds nothing, the position is returned with a warning.

@@ -441,16 +441,13 @@ def test_grooved_films_of_swift_and_stieber_against_films_that_conserve_mass():
     rng, ratios = np.random.default_rng(5), []
     for k in range(20):
         radius, slender, way = 10 ** rng.uniform(-1.9, -1.0), rng.uniform(0.4, 1.2), rng.choice([-1.0, 1.0])
-        length, clearance, supply = (
-            2.0 * radius * slender,
-            radius * rng.uniform(0.8e-3, 2e-3),
-            rng.uniform(308.0, 333.0),
-        )
+        length, clearance = 2.0 * radius * slender, radius * rng.uniform(0.8e-3, 2e-3)
+        supply = rng.uniform(308.0, 333.0)
         area = (ehd.AxialGroove, ehd.Pocket)[k % 2](
             angle=math.pi + rng.uniform(-1.0, 1.0) * math.pi / 6.0,
             width_angle=math.radians(rng.uniform(10.0, 30.0) + 20.0 * (k % 2)),
             length=rng.uniform(0.6, 0.9) * length,
-            pressure=10 ** rng.uniform(4.3, 5.5),
+            pressure=0.0 if k % 4 == 3 else 10 ** rng.uniform(4.3, 5.5),
         )
         oil = ehd.oil(("ISO VG 32", "ISO VG 46", "ISO VG 68")[k % 3])
         place = {"speed": way * rng.uniform(2.0, 20.0) / radius, "eccentricity_ratio": rng.uniform(0.3, 0.85)}
@@ -477,8 +474,30 @@ def test_grooved_films_of_swift_and_stieber_against_films_that_conserve_mass():
             found.append([*rises, film.power_loss, film.oil_flow, film.supply_flows[0]])
         ratios.append(np.divide(*found))
     low, high = np.quantile(ratios, (0.1, 0.9), axis=0)
-    stated = ((0.7, 1.0), (1.0, 1.2), (0.9, 1.1), (1.0, 1.3), (1.05, 1.5), (0.7, 1.1))
+    stated = ((0.65, 1.0), (1.0, 1.2), (0.85, 1.1), (1.0, 1.3), (1.05, 1.6), (0.7, 1.1))
     for name, least, most, (lower, upper) in zip(
         ("mean rise", "largest rise", "one temperature", "loss", "oil", "supply"), low, high, stated, strict=True
     ):
         assert lower < least < most < upper, (name, least, most)
+
+
+@pytest.mark.slow
+def test_films_behind_grooves_without_pressure_are_found():
+    """The border between cavity and loaded film moves with the temperature; oil that is passed on must not jump."""
+    for k in range(30):
+        rng = np.random.default_rng((7, k))
+        radius = 10 ** rng.uniform(-1.9, -1.0)
+        clearance, length = radius * rng.uniform(0.8e-3, 2e-3), rng.uniform(0.4, 1.2) * 2.0 * radius
+        speed = rng.uniform(2.0, 20.0) / radius * rng.choice([-1.0, 1.0])
+        oil = ehd.oil(str(rng.choice(["ISO VG 32", "ISO VG 46", "ISO VG 68"])))
+        ratio, angle = rng.uniform(0.3, 0.9), math.pi + rng.uniform(-1.0, 1.0)
+        groove = ehd.AxialGroove(angle=angle, width_angle=math.radians(rng.uniform(10.0, 30.0)), length=0.75 * length)
+        made = ehd.JournalBearing(
+            journal_radius=radius,
+            length=length,
+            radial_clearance=clearance,
+            lubricant=oil,
+            supply=(groove,),
+            thermal=ehd.FilmEnergy(supply_temperature=320.0),
+        )
+        assert ehd.steady(made, speed=speed, eccentricity_ratio=ratio).temperature.max() > 320.0

@@ -132,6 +132,8 @@ def test_what_has_no_temperature_is_refused():
     with pytest.raises(ehd.FilmError, match="no oil is a liquid above"):
         small = ball(VG, {"supply_temperature": SUPPLY, "housing_conductance": 1e-3})
         ehd.steady_spherical(small, place=(0, 0, 0), angular_velocity=(0, 0, 1000.0))
+    with pytest.raises(ehd.FilmError, match="the heating is too strong"):
+        ehd.steady_spherical(small, place=(0, 0, 0), angular_velocity=(0, 0, 3000.0))
 
 
 def test_an_audit_tells_that_a_film_warms_up():
